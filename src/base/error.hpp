@@ -1,0 +1,30 @@
+/// The one exception of the program, and the exit codes it ends in.
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace packmpi {
+
+/// What the process returns to the shell; the same on every rank (doc/input.md, "Exit codes").
+enum class ExitCode : int {
+  done = 0,
+  bad_input = 2,
+  target_missed = 3,
+  numerical_failure = 4,
+  io_failure = 5,
+  bad_checkpoint = 6,
+  stopped_early = 75,
+};
+
+/// An error a user can act on: the words say what is wrong and what to do.
+/// Throw it collectively (comm::agree), or on one rank only where no other rank can wait for it.
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& words) : std::runtime_error(words), code_(code) {}
+  [[nodiscard]] ExitCode code() const noexcept { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+}  // namespace packmpi

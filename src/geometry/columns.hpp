@@ -1,0 +1,40 @@
+/// The lateral grid of columns that ownership, halos and neighbour search share.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/box.hpp"
+
+namespace packmpi::geometry {
+
+using ColumnIndex = std::int64_t;   ///< ix + nx * iy, global
+
+/// nx x ny equal columns (2D: ny = 1), each at least `reach` wide on every axis that has more than one.
+/// A periodic axis has at least three columns or its box is refused (scene), so that an image is met once.
+class ColumnGrid {
+ public:
+  ColumnGrid() = default;
+  ColumnGrid(const Box& box, double reach);
+
+  [[nodiscard]] const Box& box() const noexcept { return box_; }
+  [[nodiscard]] std::array<int, 2> counts() const noexcept { return counts_; }
+  [[nodiscard]] std::array<double, 2> widths() const noexcept { return widths_; }   ///< [m]
+  [[nodiscard]] ColumnIndex size() const noexcept { return ColumnIndex{counts_[0]} * counts_[1]; }
+  /// Column coordinate along `axis`; positions outside the box count as in the border column.
+  [[nodiscard]] int coordinate(int axis, double x) const noexcept;
+  [[nodiscard]] ColumnIndex column(const Vec3& position) const noexcept;
+  [[nodiscard]] ColumnIndex index(int ix, int iy) const noexcept { return ix + ColumnIndex{counts_[0]} * iy; }
+  /// The up to 8 columns that touch `column` (2 in 2D), through periodic faces too, each once, ascending; not itself.
+  void neighbors(ColumnIndex column, std::vector<ColumnIndex>& out) const;
+  /// Lateral distance from a position to the rectangle of `column`, through periodic faces [m]; 0 inside.
+  [[nodiscard]] double distance(const Vec3& position, ColumnIndex column) const noexcept;
+
+ private:
+  Box box_;
+  std::array<int, 2> counts_{1, 1};
+  std::array<double, 2> widths_{};
+  std::array<double, 2> inverse_widths_{};
+};
+
+}  // namespace packmpi::geometry

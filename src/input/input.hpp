@@ -1,0 +1,123 @@
+/// A scene file as plain structs in SI units: what the user asked for, checked key by key, nothing derived.
+/// Names and nesting follow the TOML (doc/input.md is generated from the same table that reads it: input/keys.cpp).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace packmpi::input {
+
+enum class Boundary { wall, periodic };
+enum class SizeDistribution { equal, gaussian, uniform };
+enum class HeightRule { surface, highest };
+enum class FrictionVelocity { contact, centre };
+enum class Regularisation { stop, viscous, none };
+enum class WallStiffness { rigid, material };
+enum class StopRule { duration, settled };
+enum class Precision { double_, mixed };
+enum class Decomposition { slab, pencil, metis };
+
+struct Container {
+  int dimension = 3;                ///< 2 or 3
+  std::vector<double> size;         ///< [m] lateral extents, then the desired height H_d; `dimension` numbers
+  std::vector<Boundary> boundary;   ///< one per lateral axis
+};
+
+struct Radius {
+  SizeDistribution distribution = SizeDistribution::equal;
+  double value = 0.0;               ///< [m] equal
+  double mean = 0.0, sd = 0.0;      ///< [m] gaussian, by number
+  double min = 0.0, max = 0.0;      ///< [m] gaussian (truncation), uniform
+  std::string weighting;            ///< "number"; mandatory where the distribution is not "equal"
+};
+
+struct Particles {
+  double density = 0.0;             ///< [kg/m3]
+  double youngs_modulus = 0.0;      ///< [Pa]
+  double poisson_ratio = 0.0;       ///< [-]
+  Radius radius;
+};
+
+struct Layers {
+  double thickness = 0.0;           ///< [m] h_0
+  double fraction = 0.0;            ///< [-] phi_0
+  double duration = 0.0;            ///< [s] of dynamics a layer
+  HeightRule height = HeightRule::surface;
+  Vec3 velocity{};                  ///< [m/s] at insertion
+  Vec3 spin{};                      ///< [rad/s] at insertion
+  std::int64_t attempts = 0;        ///< darts a particle may throw before RSA gives up
+  std::int64_t maximum = 0;         ///< layers at most; 0: no limit but the program's own bound
+};
+
+struct Jamming {
+  double gravity = 0.0;             ///< [m/s2] downward
+};
+
+struct Contact {
+  double damping_ratio = 0.0;       ///< [-] xi
+  double friction = 0.0;            ///< [-] mu_d
+  double wall_friction = 0.0;       ///< [-]
+  FrictionVelocity friction_velocity = FrictionVelocity::contact;
+  Regularisation regularisation = Regularisation::stop;
+  double slip_time = 0.0;           ///< [s] viscous only
+  bool tension_cutoff = true;
+  WallStiffness wall = WallStiffness::rigid;
+};
+
+struct Drag {
+  double coefficient = 0.0;         ///< [N s/m]
+  Vec3 fluid_velocity{};            ///< [m/s]
+};
+
+struct NearField {                  ///< f_ij = (alpha1 d^-beta1 - alpha2 d^-beta2) n_ij for d < cutoff
+  double alpha1 = 0.0, beta1 = 0.0, alpha2 = 0.0, beta2 = 0.0;
+  double cutoff = 0.0;              ///< [m] between centres
+};
+
+struct Dynamics {
+  bool rotation = true;
+  double theta = 0.0;               ///< only 0 (explicit) in this version
+  std::optional<double> time_step;  ///< [s]; none: "auto" (eq. 23)
+  StopRule stop = StopRule::duration;
+  Precision precision = Precision::double_;
+  int window = 0;
+};
+
+struct Parallel {
+  Decomposition decomposition = Decomposition::slab;
+};
+
+struct Output {
+  bool contacts = false;            ///< write /contacts
+  double log_every = 0.0;           ///< [s] of simulated time between rows of NAME.steps.csv
+};
+
+struct Petsc {
+  std::string options;              ///< passed to PETSc as they are
+};
+
+/// One scene. `name` is the stem of the scene file: outputs are called NAME.hdf and so on.
+struct Input {
+  std::string name;
+  std::string file;                 ///< as the user gave it, for messages
+  std::uint64_t seed = 1;
+  std::string fidelity = "paper";
+  Container container;
+  Particles particles;
+  Layers layers;
+  Jamming jamming;
+  Contact contact;
+  Drag drag;
+  std::optional<NearField> near_field;   ///< none: off
+  Dynamics dynamics;
+  Parallel parallel;
+  Output output;
+  Petsc petsc;
+  std::string effective;            ///< the scene with every default filled in, as TOML; the provenance
+};
+
+}  // namespace packmpi::input

@@ -1,0 +1,28 @@
+/// The Verlet lists of one rank: which pairs and walls may touch before the next rebuild.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace packmpi::neighbor {
+
+/// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only).
+enum class Wall : std::int32_t { floor = 0, x_low = 1, x_high = 2, y_low = 3, y_high = 4 };
+
+/// Half list: each pair that has an owned end once. first[p] is an owned slot, ascending in p; second[p] > first[p], an
+/// owned or a ghost slot (>= Store::owned()). A pair across a rank border is listed on both ranks, each with its own
+/// particle first. Distance at the rebuild < reach of the pair + skin.
+struct PairList {
+  std::vector<LocalIndex> first;
+  std::vector<LocalIndex> second;
+  LocalIndex window = 1;   ///< 1 + largest second - first over pairs of two owned particles
+};
+
+/// Owned particles within skin of a wall, ascending in particle; one entry for each (particle, wall).
+struct WallList {
+  std::vector<LocalIndex> particle;
+  std::vector<Wall> wall;
+};
+
+}  // namespace packmpi::neighbor

@@ -1,0 +1,48 @@
+/// The record as JSON, as a table on the screen, and the time series.
+#pragma once
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+#include "comm/comm.hpp"
+#include "output/record.hpp"
+
+namespace packmpi::output {
+
+/// The record as JSON text (2-space indent, stable key order, 17 digits). Local.
+[[nodiscard]] std::string to_json(const RunRecord& record);
+
+/// "Asked versus got" and the layers as a plain-text table of at most 100 columns. Local.
+[[nodiscard]] std::string to_table(const RunRecord& record);
+
+/// Collective. Writes `text` to `path` on rank 0: temporary, fsync, rename; throws Error(io_failure) on every rank.
+void write_text(const comm::Comm& comm, const std::string& path, const std::string& text);
+
+/// One row of NAME.steps.csv.
+struct StepRow {
+  std::int32_t layer;
+  std::int64_t step;            ///< since the beginning of the run
+  double time;                  ///< [s] simulated
+  std::int64_t particles;
+  double kinetic_energy;        ///< [J]
+  double max_speed;             ///< [m/s]
+  double top;                   ///< [m]
+  double mean_height;           ///< [m] mean height of the centres
+  double max_force;             ///< [N]
+  std::int64_t rebuilds;        ///< so far; depends on the ranks
+};
+
+/// NAME.steps.csv, written row by row by rank 0 (a header line names columns and units). A failed write is found at close().
+class StepLog {
+ public:
+  StepLog(const comm::Comm& comm, const std::string& path);   ///< collective; Error(io_failure) on all ranks
+  void append(const StepRow& row);                            ///< local; no-op but on rank 0
+  void close();                                               ///< collective; Error(io_failure) on all ranks
+
+ private:
+  const comm::Comm* comm_;
+  std::string path_;
+  std::ofstream file_;
+};
+
+}  // namespace packmpi::output

@@ -1,0 +1,83 @@
+/// The particles of one rank: records and ids, owned first, then ghosts.
+#pragma once
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "particles/layout.hpp"
+
+namespace packmpi::particles {
+
+/// A growing array of doubles, aligned to 64 bytes and followed by 64 readable bytes of padding, so that vector loads
+/// of the last record stay inside. New elements are not initialised.
+class AlignedDoubles {
+ public:
+  AlignedDoubles() = default;
+  [[nodiscard]] double* data() noexcept { return data_.get(); }
+  [[nodiscard]] const double* data() const noexcept { return data_.get(); }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+  void resize(std::size_t size);   ///< keeps the contents; grows by a tenth more than needed
+
+ private:
+  struct Free {
+    void operator()(double* p) const noexcept { std::free(p); }
+  };
+  std::unique_ptr<double, Free> data_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+/// Owned particles in slots [0, owned()), ghosts in [owned(), owned() + ghosts()).
+/// A ghost carries its owner's bits. Local: no MPI.
+class Store {
+ public:
+  explicit Store(const Layout& layout) : layout_(layout) {}
+
+  [[nodiscard]] const Layout& layout() const noexcept { return layout_; }
+  [[nodiscard]] LocalIndex owned() const noexcept { return owned_; }
+  [[nodiscard]] LocalIndex ghosts() const noexcept { return ghosts_; }
+  [[nodiscard]] LocalIndex total() const noexcept { return owned_ + ghosts_; }
+
+  [[nodiscard]] double* records() noexcept { return records_.data(); }
+  [[nodiscard]] const double* records() const noexcept { return records_.data(); }
+  [[nodiscard]] double* record(LocalIndex i) noexcept { return records_.data() + offset(i); }
+  [[nodiscard]] const double* record(LocalIndex i) const noexcept { return records_.data() + offset(i); }
+  [[nodiscard]] Vec3 position(LocalIndex i) const noexcept;  ///< [m]; z = 0 in 2D
+  [[nodiscard]] Vec3 velocity(LocalIndex i) const noexcept;  ///< [m/s]
+  [[nodiscard]] Vec3 spin(LocalIndex i) const noexcept;      ///< omega [rad/s]; 0 when rotation is off; in 2D (0, 0, omega)
+  [[nodiscard]] double radius(LocalIndex i) const noexcept { return record(i)[layout_.radius]; }  ///< [m]
+  [[nodiscard]] std::span<GlobalId> ids() noexcept { return ids_; }               ///< length total()
+  [[nodiscard]] std::span<const GlobalId> ids() const noexcept { return ids_; }
+
+  /// Append an owned particle. Precondition: ghosts() == 0. omega [rad/s] is ignored when rotation is off.
+  void add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega);
+  /// Append an owned particle as it stands in another store of the same layout. Precondition: ghosts() == 0.
+  void add_record(GlobalId id, const double* record);
+  /// Make room for `count` ghosts; their contents are not set.
+  void set_ghosts(LocalIndex count);
+  /// Keep the owned particles order[0], order[1], ... in that order; drops the others and all ghosts.
+  void reorder(std::span<const LocalIndex> order);
+  /// Bytes allocated for the particles.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  [[nodiscard]] std::size_t offset(LocalIndex i) const noexcept {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(layout_.stride);
+  }
+  Layout layout_;
+  LocalIndex owned_ = 0;
+  LocalIndex ghosts_ = 0;
+  AlignedDoubles records_;
+  AlignedDoubles scratch_;   // the other buffer of reorder()
+  std::vector<GlobalId> ids_;
+};
+
+/// A number that names the state of the owned particles: the sum mod 2^64 over them of a hash of id and the bits of the
+/// record. Independent of order; add it over the ranks (comm.sum) and it is independent of them too. Local.
+[[nodiscard]] std::uint64_t digest(const Store& store);
+
+}  // namespace packmpi::particles
