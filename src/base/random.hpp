@@ -7,23 +7,23 @@
 
 namespace packmpi::random {
 
-/// What a draw is for; each purpose is an independent stream.
+/// What a draw is for; each purpose is an independent stream. Values are below 2^8.
 enum class Purpose : std::uint32_t { radius = 1, dart = 2, test = 3 };
 
-/// The name of a draw.
+/// The name of a draw. Two names within the bounds below never share a Philox counter.
 struct Name {
-  std::uint64_t seed;      ///< the scene's seed
+  std::uint64_t seed;  ///< the scene's seed
   Purpose purpose;
   std::uint32_t layer;     ///< 0 .. ; below 2^24
   std::uint64_t particle;  ///< index of the particle in its layer, below 2^48
   std::uint32_t attempt;   ///< 0 .. ; a dart, or a trial of a rejection method
 };
 
-/// Two 64-bit words of the stream `name`.
+/// Two 64-bit words of the stream `name`: its first block. Bounds are asserted. Cost: one Philox block, 10 ns.
 std::array<std::uint64_t, 2> words(const Name& name) noexcept;
 
-/// Four numbers in [0, 1), multiples of 2^-32... the first two of 2^-53; independent of each other.
-/// Cost: one Philox block each two.
+/// Four numbers in [0, 1), multiples of 2^-53, independent of each other. The first two are made of words(name): take
+/// either from a name, not both. Bounds are asserted. Cost: two Philox blocks.
 std::array<double, 4> uniforms(const Name& name) noexcept;
 
 }  // namespace packmpi::random

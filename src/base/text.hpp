@@ -1,0 +1,26 @@
+/// Words for people: suggestions for misspelt names, durations, sizes.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace packmpi::text {
+
+/// The least number of letters inserted, removed, exchanged, or swapped with their neighbour that turns a into b
+/// (optimal string alignment). Case counts. Cost: O(|a| |b|).
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `word`, for "did you mean ...?"; the first of equals. None when all are further away than
+/// a third of the longer word's letters (at least one edit is always allowed), which would be a guess.
+[[nodiscard]] std::optional<std::string> closest(std::string_view word, std::span<const std::string> candidates);
+
+/// "0.42 s", "12.3 s", "4 min 05 s", "3 h 07 min", "2 d 05 h"; "unknown" for anything negative or not finite.
+[[nodiscard]] std::string duration(double seconds);
+
+/// "512 B", "1.5 KiB", "2.0 GiB": powers of 1024.
+[[nodiscard]] std::string bytes(std::uint64_t count);
+
+}  // namespace packmpi::text

@@ -1,0 +1,84 @@
+#include "base/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/timer.hpp"
+
+namespace packmpi {
+namespace {
+
+TEST(Text, EditDistance) {
+  EXPECT_EQ(text::edit_distance("", ""), 0U);
+  EXPECT_EQ(text::edit_distance("", "abc"), 3U);
+  EXPECT_EQ(text::edit_distance("abc", ""), 3U);
+  EXPECT_EQ(text::edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(text::edit_distance("thickness", "thickenss"), 1U);  // two neighbours swapped
+  EXPECT_EQ(text::edit_distance("sprread", "spread"), 1U);
+  EXPECT_EQ(text::edit_distance("same", "same"), 0U);
+}
+
+TEST(Text, ClosestSuggestsOnlyWhatIsNear) {
+  const std::vector<std::string> keys{"thickness", "fraction", "duration", "height", "r"};
+  EXPECT_EQ(text::closest("thicknes", keys), "thickness");
+  EXPECT_EQ(text::closest("fracton", keys), "fraction");
+  EXPECT_EQ(text::closest("frattion", keys), "fraction");
+  EXPECT_EQ(text::closest("gravity", keys), std::nullopt);
+  EXPECT_EQ(text::closest("thickness", {}), std::nullopt);
+  const std::vector<std::string> twins{"abcd", "abce"};
+  EXPECT_EQ(text::closest("abcx", twins), "abcd");
+}
+
+TEST(Text, Durations) {
+  EXPECT_EQ(text::duration(0.0), "0.00 s");
+  EXPECT_EQ(text::duration(0.424), "0.42 s");
+  EXPECT_EQ(text::duration(9.999), "10.0 s");
+  EXPECT_EQ(text::duration(12.34), "12.3 s");
+  EXPECT_EQ(text::duration(59.96), "1 min 00 s");
+  EXPECT_EQ(text::duration(245.0), "4 min 05 s");
+  EXPECT_EQ(text::duration(3599.9), "1 h 00 min");
+  EXPECT_EQ(text::duration(11220.0), "3 h 07 min");
+  EXPECT_EQ(text::duration(86400.0 * 2 + 3600.0 * 5), "2 d 05 h");
+  EXPECT_EQ(text::duration(-1.0), "unknown");
+  EXPECT_EQ(text::duration(std::nan("")), "unknown");
+  EXPECT_EQ(text::duration(INFINITY), "unknown");
+}
+
+TEST(Text, Bytes) {
+  EXPECT_EQ(text::bytes(0), "0 B");
+  EXPECT_EQ(text::bytes(1023), "1023 B");
+  EXPECT_EQ(text::bytes(1536), "1.5 KiB");
+  EXPECT_EQ(text::bytes(1024 * 1024 - 1), "1.0 MiB");
+  EXPECT_EQ(text::bytes(std::uint64_t{2} << 30U), "2.0 GiB");
+  EXPECT_EQ(text::bytes(~std::uint64_t{0}), "16.0 EiB");
+}
+
+TEST(Timer, StopwatchRuns) {
+  const Stopwatch watch;
+  const double first = watch.seconds();
+  while (watch.seconds() < first + 1e-3) {
+  }
+  EXPECT_GE(watch.seconds(), first + 1e-3);
+}
+
+TEST(Timer, PhasesAddUpTheirVisits) {
+  Phases phases;
+  for (int i = 0; i < 3; ++i) {
+    const auto outer = phases.visit("outer");
+    const auto inner = phases.visit("inner");
+    const Stopwatch watch;
+    while (watch.seconds() < 1e-3) {
+    }
+  }
+  ASSERT_EQ(phases.all().size(), 2U);
+  EXPECT_EQ(phases.all()[0].name, "outer");
+  EXPECT_EQ(phases.all()[0].visits, 3);
+  EXPECT_GE(phases.seconds("inner"), 3e-3);
+  EXPECT_GE(phases.seconds("outer"), phases.seconds("inner"));
+  EXPECT_EQ(phases.seconds("never"), 0.0);
+}
+
+}  // namespace
+}  // namespace packmpi
