@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# The unit tests at 1 and 2 ranks, and the system tests labelled "sanitize", under AddressSanitizer and
+# UndefinedBehaviorSanitizer, in build-sanitizers.
+# usage: [BUILD=folder] scripts/sanitize.sh [options of ctest]
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+build=${BUILD:-$here/../build-sanitizers}
+"$here/setup.sh"
+[[ -f $build/build.ninja ]] ||
+  cmake -S "$here/.." -B "$build" --preset sanitizers --log-level=WARNING >/dev/null
+BUILD=$build "$here/build.sh" all
+run=(ctest --test-dir "$build" --output-on-failure -j "$(nproc)")
+"${run[@]}" --no-tests=error -L '^np[12]$' -LE '^(system|slow)$' "$@"
+"${run[@]}" -L '^sanitize$' "$@"

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing; says nothing and takes no time when none is.
+# usage: scripts/setup.sh [--plots] [--render] [--checks]
+#   --plots   also h5py and matplotlib, for the scripts that read packs
+#   --render  also VTK and a virtual display, for pictures of packs in 3D
+#   --checks  also clang-tidy and clang-format, for scripts/check.sh
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libeigen3-dev
+  libhdf5-openmpi-dev libmetis-dev libgtest-dev libgmock-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+  libspdlog-dev librandom123-dev nlohmann-json3-dev)
+for option in "$@"; do
+  case $option in
+    --plots) packages+=(python3 python3-h5py python3-matplotlib) ;;
+    --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
+    --checks) packages+=(clang clang-tidy clang-format) ;;
+    *) sed -n '2,6s/^# //p' "$0" >&2; exit 2 ;;
+  esac
+done
+
+if ! command -v apt-get >/dev/null; then
+  echo "setup: no apt-get here; these Debian packages, or what they hold, are needed: ${packages[*]}" >&2
+  exit 0   # on a cluster the modules may be loaded already: let CMake judge
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [[ $status == "install ok installed" ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  command -v sudo >/dev/null || { echo "setup: ask your administrator to install: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq -o DPkg::Lock::Timeout=300 "$@" >"$log" 2>&1 ||
+    { cat "$log" >&2; echo "setup: apt-get $1 failed" >&2; exit 1; }
+}
+apt update
+apt install --no-install-recommends "${missing[@]}"

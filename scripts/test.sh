@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything, runs all tests.
+# usage: [BUILD=folder] scripts/test.sh [options of ctest]     (for example -R rooms)
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+"$here/setup.sh" --plots
+"$here/build.sh" all
+ctest --test-dir "${BUILD:-$here/../build}" --output-on-failure --no-tests=error -j "$(nproc)" "$@"

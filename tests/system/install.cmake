@@ -1,0 +1,37 @@
+# Installs BUILD into FOLDER, moves the tree, and builds and runs CONSUMER against it.
+cmake_minimum_required(VERSION 3.25)
+function(run)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT code EQUAL 0)
+    list(JOIN ARGN " " command)
+    message("${text}")
+    message(FATAL_ERROR "exit code ${code}: ${command}")
+  endif()
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/first)
+file(RENAME ${FOLDER}/first ${FOLDER}/moved)   # nothing may remember where it was installed
+
+set(hidden)
+if(SHARED)
+  foreach(package PkgConfig HDF5 Eigen3 tomlplusplus CLI11 fmt spdlog nlohmann_json)
+    list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+  endforeach()
+endif()
+run(${CMAKE_COMMAND} -S ${CONSUMER} -B consumer -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${FOLDER}/moved
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${hidden})
+run(${CMAKE_COMMAND} --build consumer)
+run(consumer/consumer)
+if(NOT text MATCHES "packmpi ${VERSION} \\(.+, .+\\)")
+  message(FATAL_ERROR "the consumer said: ${text}")
+endif()
+
+if(EXISTS ${FOLDER}/moved/bin/packmpi)
+  run(${FOLDER}/moved/bin/packmpi --version)
+  if(NOT text MATCHES "${VERSION}")
+    message(FATAL_ERROR "packmpi --version said: ${text}")
+  endif()
+endif()
