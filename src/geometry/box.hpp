@@ -10,13 +10,14 @@ namespace packmpi::geometry {
 /// the top. Lateral axes end in walls or are periodic.
 struct Box {
   int dimension = 3;
-  Vec3 size{};                           ///< [m] lateral extents, then the desired height H_d; unused entries 0
-  std::array<bool, 2> periodic{};        ///< per lateral axis
+  Vec3 size{};                     ///< [m] lateral extents, then the desired height H_d; unused entries 0
+  std::array<bool, 2> periodic{};  ///< per lateral axis
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }
   [[nodiscard]] constexpr double height() const { return size[static_cast<std::size_t>(dimension - 1)]; }  ///< H_d [m]
-  [[nodiscard]] constexpr double floor_area() const { return dimension == 3 ? size[0] * size[1] : size[0]; }  ///< m2; 2D: m
+  /// [m2]; 2D: the floor's length [m]
+  [[nodiscard]] constexpr double floor_area() const { return dimension == 3 ? size[0] * size[1] : size[0]; }
 };
 
 /// The position in [0, L) of a periodic axis, for x within one period of it: the one formula of the whole program.

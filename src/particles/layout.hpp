@@ -17,14 +17,16 @@ namespace packmpi::particles {
 struct Layout {
   int dimension;
   bool rotation;
-  int stride;     ///< doubles a record
-  int position;   ///< always 0
+  int stride;    ///< doubles a record
+  int position;  ///< always 0
   int radius;
   int curvature;  ///< 1 / radius
   int velocity;
-  int spin;       ///< r * omega: 3 components in 3D, 1 (about +z) in 2D; -1 if absent
+  int spin;  ///< r * omega: 3 components in 3D, 1 (about +z) in 2D; -1 if absent
 
   [[nodiscard]] constexpr int spin_components() const { return rotation ? (dimension == 3 ? 3 : 1) : 0; }
+  /// Doubles of a record that mean something; the rest, behind them, is padding.
+  [[nodiscard]] constexpr int used_doubles() const { return rotation ? spin + spin_components() : stride; }
   /// Doubles a ghost receives in every step: position, velocity, spin.
   [[nodiscard]] constexpr int live_doubles() const { return 2 * dimension + spin_components(); }
   [[nodiscard]] constexpr std::size_t record_bytes() const { return sizeof(double) * static_cast<std::size_t>(stride); }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -16,11 +17,18 @@ namespace packmpi::particles {
 class AlignedDoubles {
  public:
   AlignedDoubles() = default;
+  AlignedDoubles(AlignedDoubles&& other) noexcept { swap(other); }
+  AlignedDoubles& operator=(AlignedDoubles&& other) noexcept {
+    AlignedDoubles(std::move(other)).swap(*this);
+    return *this;
+  }
+  void swap(AlignedDoubles& other) noexcept;
   [[nodiscard]] double* data() noexcept { return data_.get(); }
   [[nodiscard]] const double* data() const noexcept { return data_.get(); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
-  void resize(std::size_t size);   ///< keeps the contents; grows by a tenth more than needed
+  [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated, padding included
+  void resize(std::size_t size);  ///< keeps the contents; grows by a tenth more than needed. Errors: std::bad_alloc
 
  private:
   struct Free {
@@ -48,9 +56,9 @@ class Store {
   [[nodiscard]] const double* record(LocalIndex i) const noexcept { return records_.data() + offset(i); }
   [[nodiscard]] Vec3 position(LocalIndex i) const noexcept;  ///< [m]; z = 0 in 2D
   [[nodiscard]] Vec3 velocity(LocalIndex i) const noexcept;  ///< [m/s]
-  [[nodiscard]] Vec3 spin(LocalIndex i) const noexcept;      ///< omega [rad/s]; 0 when rotation is off; in 2D (0, 0, omega)
+  [[nodiscard]] Vec3 spin(LocalIndex i) const noexcept;  ///< omega [rad/s]; 0 when rotation is off; in 2D (0, 0, omega)
   [[nodiscard]] double radius(LocalIndex i) const noexcept { return record(i)[layout_.radius]; }  ///< [m]
-  [[nodiscard]] std::span<GlobalId> ids() noexcept { return ids_; }               ///< length total()
+  [[nodiscard]] std::span<GlobalId> ids() noexcept { return ids_; }                               ///< length total()
   [[nodiscard]] std::span<const GlobalId> ids() const noexcept { return ids_; }
 
   /// Append an owned particle. Precondition: ghosts() == 0. omega [rad/s] is ignored when rotation is off.
@@ -59,7 +67,8 @@ class Store {
   void add_record(GlobalId id, const double* record);
   /// Make room for `count` ghosts; their contents are not set.
   void set_ghosts(LocalIndex count);
-  /// Keep the owned particles order[0], order[1], ... in that order; drops the others and all ghosts.
+  /// Keep the owned particles order[0], order[1], ... in that order, each at most once; drops the others and all
+  /// ghosts. Cost: one pass over the records; no allocation once it has been called.
   void reorder(std::span<const LocalIndex> order);
   /// Bytes allocated for the particles.
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -72,12 +81,14 @@ class Store {
   LocalIndex owned_ = 0;
   LocalIndex ghosts_ = 0;
   AlignedDoubles records_;
-  AlignedDoubles scratch_;   // the other buffer of reorder()
+  AlignedDoubles scratch_;  // the other buffers of reorder()
   std::vector<GlobalId> ids_;
+  std::vector<GlobalId> scratch_ids_;
 };
 
 /// A number that names the state of the owned particles: the sum mod 2^64 over them of a hash of id and the bits of the
-/// record. Independent of order; add it over the ranks (comm.sum) and it is independent of them too. Local.
+/// record's fields (not its padding). Independent of order; add it over the ranks (comm.sum) and it is independent of
+/// them too. Local.
 [[nodiscard]] std::uint64_t digest(const Store& store);
 
 }  // namespace packmpi::particles

@@ -1,0 +1,128 @@
+#include "particles/store.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <limits>
+#include <new>
+
+namespace packmpi::particles {
+namespace {
+
+constexpr std::size_t alignment = 64;                        // bytes
+constexpr std::size_t padding = alignment / sizeof(double);  // doubles
+
+std::size_t allocated(std::size_t capacity) { return (capacity + padding) * sizeof(double); }
+
+/// The stride known to the compiler makes each copy a few vector moves.
+template <int Stride>
+void gather(const double* from, std::span<const LocalIndex> order, double* to) {
+  for (const LocalIndex i : order) {
+    std::memcpy(to, from + static_cast<std::ptrdiff_t>(i) * Stride, sizeof(double) * Stride);
+    to += Stride;
+  }
+}
+
+void gather(int stride, const double* from, std::span<const LocalIndex> order, double* to) {
+  switch (stride) {
+    case 6:
+      return gather<6>(from, order, to);
+    case 8:
+      return gather<8>(from, order, to);
+    case 12:
+      return gather<12>(from, order, to);
+    default:
+      assert(false && "a stride that layout_of() never gives");
+  }
+}
+
+}  // namespace
+
+void AlignedDoubles::swap(AlignedDoubles& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  std::swap(capacity_, other.capacity_);
+}
+
+std::size_t AlignedDoubles::bytes() const noexcept { return data_ ? allocated(capacity_) : 0; }
+
+void AlignedDoubles::resize(std::size_t size) {
+  if (size > capacity_) {
+    const std::size_t wanted = size + size / 10;
+    const std::size_t capacity = (wanted + padding - 1) / padding * padding;  // aligned_alloc takes whole lines
+    std::unique_ptr<double, Free> grown(static_cast<double*>(std::aligned_alloc(alignment, allocated(capacity))));
+    if (!grown) throw std::bad_alloc();
+    if (size_ > 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(double));
+    data_ = std::move(grown);
+    capacity_ = capacity;
+  }
+  size_ = size;
+}
+
+Vec3 Store::position(LocalIndex i) const noexcept {
+  const double* p = record(i) + layout_.position;
+  return {p[0], p[1], layout_.dimension == 3 ? p[2] : 0.0};
+}
+
+Vec3 Store::velocity(LocalIndex i) const noexcept {
+  const double* v = record(i) + layout_.velocity;
+  return {v[0], v[1], layout_.dimension == 3 ? v[2] : 0.0};
+}
+
+Vec3 Store::spin(LocalIndex i) const noexcept {
+  if (!layout_.rotation) return {};
+  const double* s = record(i) + layout_.spin;  // surface speeds
+  const double r = radius(i);
+  if (layout_.dimension == 2) return {0.0, 0.0, s[0] / r};
+  return {s[0] / r, s[1] / r, s[2] / r};
+}
+
+void Store::add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega) {
+  std::array<double, 12> fields{};
+  const auto put = [&fields](int at, double value) { fields[static_cast<std::size_t>(at)] = value; };
+  for (int d = 0; d < layout_.dimension; ++d) {
+    put(layout_.position + d, position[static_cast<std::size_t>(d)]);
+    put(layout_.velocity + d, velocity[static_cast<std::size_t>(d)]);
+  }
+  put(layout_.radius, radius);
+  put(layout_.curvature, 1.0 / radius);
+  for (int c = 0; c < layout_.spin_components(); ++c) {
+    put(layout_.spin + c, radius * omega[static_cast<std::size_t>(layout_.dimension == 3 ? c : 2)]);
+  }
+  add_record(id, fields.data());
+}
+
+void Store::add_record(GlobalId id, const double* record) {
+  assert(ghosts_ == 0 && owned_ < std::numeric_limits<LocalIndex>::max());
+  const std::size_t at = offset(owned_);
+  records_.resize(at + static_cast<std::size_t>(layout_.stride));
+  std::memcpy(records_.data() + at, record, layout_.record_bytes());
+  ids_.push_back(id);
+  ++owned_;
+}
+
+void Store::set_ghosts(LocalIndex count) {
+  assert(count >= 0 && count <= std::numeric_limits<LocalIndex>::max() - owned_);
+  ghosts_ = count;
+  records_.resize(offset(total()));
+  ids_.resize(static_cast<std::size_t>(total()));
+}
+
+void Store::reorder(std::span<const LocalIndex> order) {
+  assert(order.size() <= static_cast<std::size_t>(owned_));
+  scratch_.resize(order.size() * static_cast<std::size_t>(layout_.stride));
+  gather(layout_.stride, records_.data(), order, scratch_.data());
+  scratch_ids_.resize(order.size());
+  std::transform(order.begin(), order.end(), scratch_ids_.begin(),
+                 [this](LocalIndex i) { return ids_[static_cast<std::size_t>(i)]; });
+  records_.swap(scratch_);
+  ids_.swap(scratch_ids_);
+  owned_ = static_cast<LocalIndex>(order.size());
+  ghosts_ = 0;
+}
+
+std::size_t Store::bytes() const noexcept {
+  return records_.bytes() + scratch_.bytes() + (ids_.capacity() + scratch_ids_.capacity()) * sizeof(GlobalId);
+}
+
+}  // namespace packmpi::particles
