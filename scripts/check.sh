@@ -9,7 +9,7 @@ build=${BUILD:-$source_dir/build}
 
 check_format() {
   find "$source_dir"/{src,include,tests} -name '*.[ch]pp' -print0 |
-    xargs -0 clang-format --dry-run --Werror || { echo "check: clang-format found differences" >&2; return 1; }
+    xargs -0 clang-format --dry-run --Werror -ferror-limit=1 || { echo "check: clang-format found differences" >&2; return 1; }
 }
 
 # Reads the compile database: a configured build folder is enough, nothing need be built. A file's report is printed whole.
