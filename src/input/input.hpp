@@ -22,60 +22,60 @@ enum class Precision { double_, mixed };
 enum class Decomposition { slab, pencil, metis };
 
 struct Container {
-  int dimension = 3;                ///< 2 or 3
-  std::vector<double> size;         ///< [m] lateral extents, then the desired height H_d; `dimension` numbers
-  std::vector<Boundary> boundary;   ///< one per lateral axis
+  int dimension = 3;               ///< 2 or 3
+  std::vector<double> size;        ///< [m] lateral extents, then the desired height H_d; `dimension` numbers
+  std::vector<Boundary> boundary;  ///< one per lateral axis
 };
 
 struct Radius {
   SizeDistribution distribution = SizeDistribution::equal;
-  double value = 0.0;               ///< [m] equal
-  double mean = 0.0, sd = 0.0;      ///< [m] gaussian, by number
-  double min = 0.0, max = 0.0;      ///< [m] gaussian (truncation), uniform
-  std::string weighting;            ///< "number"; mandatory where the distribution is not "equal"
+  double value = 0.0;           ///< [m] equal
+  double mean = 0.0, sd = 0.0;  ///< [m] gaussian, by number
+  double min = 0.0, max = 0.0;  ///< [m] gaussian (truncation), uniform
+  std::string weighting;        ///< "number"; mandatory where the distribution is not "equal"
 };
 
 struct Particles {
-  double density = 0.0;             ///< [kg/m3]
-  double youngs_modulus = 0.0;      ///< [Pa]
-  double poisson_ratio = 0.0;       ///< [-]
+  double density = 0.0;         ///< [kg/m3]
+  double youngs_modulus = 0.0;  ///< [Pa]
+  double poisson_ratio = 0.0;   ///< [-]
   Radius radius;
 };
 
 struct Layers {
-  double thickness = 0.0;           ///< [m] h_0
-  double fraction = 0.0;            ///< [-] phi_0
-  double duration = 0.0;            ///< [s] of dynamics a layer
+  double thickness = 0.0;  ///< [m] h_0
+  double fraction = 0.0;   ///< [-] phi_0
+  double duration = 0.0;   ///< [s] of dynamics a layer
   HeightRule height = HeightRule::surface;
-  Vec3 velocity{};                  ///< [m/s] at insertion
-  Vec3 spin{};                      ///< [rad/s] at insertion
-  std::int64_t attempts = 0;        ///< darts a particle may throw before RSA gives up
-  std::int64_t maximum = 0;         ///< layers at most; 0: no limit but the program's own bound
+  Vec3 velocity{};            ///< [m/s] at insertion
+  Vec3 spin{};                ///< [rad/s] at insertion; 2D: only z
+  std::int64_t attempts = 0;  ///< darts a particle may throw before RSA gives up
+  std::int64_t maximum = 0;   ///< layers at most; 0: no limit but the program's own bound
 };
 
 struct Jamming {
-  double gravity = 0.0;             ///< [m/s2] downward
+  double gravity = 0.0;  ///< [m/s2] downward
 };
 
 struct Contact {
-  double damping_ratio = 0.0;       ///< [-] xi
-  double friction = 0.0;            ///< [-] mu_d
-  double wall_friction = 0.0;       ///< [-]
+  double damping_ratio = 0.0;  ///< [-] xi
+  double friction = 0.0;       ///< [-] mu_d
+  double wall_friction = 0.0;  ///< [-]
   FrictionVelocity friction_velocity = FrictionVelocity::contact;
   Regularisation regularisation = Regularisation::stop;
-  double slip_time = 0.0;           ///< [s] viscous only
+  double slip_time = 0.0;  ///< [s] viscous only
   bool tension_cutoff = true;
   WallStiffness wall = WallStiffness::rigid;
 };
 
 struct Drag {
-  double coefficient = 0.0;         ///< [N s/m]
-  Vec3 fluid_velocity{};            ///< [m/s]
+  double coefficient = 0.0;  ///< [N s/m]
+  Vec3 fluid_velocity{};     ///< [m/s]
 };
 
-struct NearField {                  ///< f_ij = (alpha1 d^-beta1 - alpha2 d^-beta2) n_ij for d < cutoff
+struct NearField {  ///< f_ij = (alpha1 d^-beta1 - alpha2 d^-beta2) n_ij for d < cutoff
   double alpha1 = 0.0, beta1 = 0.0, alpha2 = 0.0, beta2 = 0.0;
-  double cutoff = 0.0;              ///< [m] between centres
+  double cutoff = 0.0;  ///< [m] between centres
 };
 
 struct Dynamics {
@@ -91,19 +91,28 @@ struct Parallel {
   Decomposition decomposition = Decomposition::slab;
 };
 
+struct Ensemble {  ///< only 1 x 1 in this version
+  int sets = 1, packs = 1;
+};
+
+struct Checkpoint {
+  std::string every;  ///< no checkpoints in this version
+};
+
 struct Output {
-  bool contacts = false;            ///< write /contacts
-  double log_every = 0.0;           ///< [s] of simulated time between rows of NAME.steps.csv
+  bool contacts = false;   ///< write /contacts
+  double log_every = 0.0;  ///< [s] of simulated time between rows of NAME.steps.csv; 0: each step
 };
 
 struct Petsc {
-  std::string options;              ///< passed to PETSc as they are
+  std::string options;  ///< passed to PETSc as they are
 };
 
 /// One scene. `name` is the stem of the scene file: outputs are called NAME.hdf and so on.
 struct Input {
   std::string name;
-  std::string file;                 ///< as the user gave it, for messages
+  std::string file;  ///< as the user gave it, for messages
+  int schema_version = 1;
   std::uint64_t seed = 1;
   std::string fidelity = "paper";
   Container container;
@@ -112,12 +121,14 @@ struct Input {
   Jamming jamming;
   Contact contact;
   Drag drag;
-  std::optional<NearField> near_field;   ///< none: off
+  std::optional<NearField> near_field;  ///< none: off
   Dynamics dynamics;
   Parallel parallel;
+  Ensemble ensemble;
+  Checkpoint checkpoint;
   Output output;
   Petsc petsc;
-  std::string effective;            ///< the scene with every default filled in, as TOML; the provenance
+  std::string effective;  ///< the scene with every default filled in, as TOML; the provenance
 };
 
 }  // namespace packmpi::input

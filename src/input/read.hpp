@@ -10,15 +10,16 @@ namespace packmpi::input {
 
 /// What the command line changes of the file.
 struct Overrides {
-  std::vector<std::string> set;   ///< "key.path=value", the value in TOML syntax (bare words are taken as strings)
+  std::vector<std::string> set;  ///< "key.path=value", the value in TOML syntax (bare words are taken as strings)
 };
 
-/// Collective. Rank 0 reads and parses, all ranks get the same Input or throw the same Error(bad_input), whose words are
-/// one line "FILE:LINE: KEY: what is wrong; what to do". Unknown keys are errors with a suggestion.
-/// Ranges of single keys and cross-checks that need no rank count are done here (input/checks.cpp).
+/// Collective. Rank 0 reads and parses, all ranks get the same Input or throw the same Error(bad_input), whose words
+/// are one line "FILE:LINE: KEY: what is wrong; what to do". Unknown keys are errors with a suggestion. Ranges of
+/// single keys and cross-checks that need no rank count are done here (input/checks.cpp).
 [[nodiscard]] Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides);
 
-/// Rank-local part of read(): parse `text` as if it were the file `path`. For tests and fuzzing. Throws Error(bad_input).
+/// Rank-local part of read(): parse `text` as if it were the file `path`. For tests and fuzzing. Throws
+/// Error(bad_input).
 [[nodiscard]] Input parse(const std::string& text, const std::string& path, const Overrides& overrides);
 
 /// doc/input.md's key tables, from the table the reader uses, as Markdown.

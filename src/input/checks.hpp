@@ -1,0 +1,12 @@
+/// Cross-checks between keys: what no single range can see.
+#pragma once
+#include "input/document.hpp"
+#include "input/input.hpp"
+
+namespace packmpi::input {
+
+/// Throws Error(bad_input) at the place of the key to change. Refuses only what is certain to fail; what depends on
+/// derived quantities is left to scene::build, what depends on chance to rsa. Local.
+void check(const Input& in, const Document& document);
+
+}  // namespace packmpi::input

@@ -1,0 +1,180 @@
+#include "input/document.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "input/units.hpp"
+
+namespace packmpi::input {
+namespace {
+
+constexpr std::size_t longest_file = 1U << 20U;  // bytes; a scene is a page of text
+constexpr std::size_t longest_line = 4096;       // bounds the depth of dotted keys, on which toml++ recurses
+
+/// Refuses what toml++ should not be asked to read.
+void check_size(const std::string& text, const std::string& file) {
+  if (text.empty())
+    throw Error(ExitCode::bad_input, file + ":1: the file is empty; see doc/input.md for a first scene");
+  if (text.size() > longest_file) {
+    throw Error(ExitCode::bad_input, file + ":1: more than 1 MiB long; is this a scene file?");
+  }
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > longest_line) {
+      throw Error(ExitCode::bad_input,
+                  fmt::format("{}:{}: line longer than {} bytes; break it", file, line, longest_line));
+    }
+    begin = end + 1;
+  }
+}
+
+/// toml++'s tree into ours. `at` makes a place of a line number.
+template <class Place>
+Node convert(const toml::node& from, std::string place, const Place& at) {
+  Node to{std::move(place), {}};
+  if (const auto* table = from.as_table()) {
+    Table entries;
+    for (const auto& [key, node] : *table) {
+      entries.push_back({std::string(key.str()), convert(node, at(key.source().begin.line), at)});
+    }
+    to.value = std::move(entries);
+  } else if (const auto* array = from.as_array()) {
+    List items;
+    for (const auto& node : *array) items.push_back(convert(node, at(node.source().begin.line), at));
+    to.value = std::move(items);
+  } else if (const auto* text = from.as_string()) {
+    to.value = text->get();
+  } else if (const auto* whole = from.as_integer()) {
+    to.value = whole->get();
+  } else if (const auto* real = from.as_floating_point()) {
+    to.value = real->get();
+  } else if (const auto* flag = from.as_boolean()) {
+    to.value = flag->get();
+  } else {
+    to.value = Date{};
+  }
+  return to;
+}
+
+Entry* find_entry(Table& table, std::string_view name) {
+  const auto found = std::ranges::find(table, name, &Entry::name);
+  return found == table.end() ? nullptr : &*found;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Takes the part of `path` before the next dot off its front.
+std::string_view next_name(std::string_view& path) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  const std::string_view name = trimmed(path.substr(0, dot));
+  path.remove_prefix(std::min(dot + 1, path.size()));
+  return name;
+}
+
+}  // namespace
+
+Document::Document(const std::string& text, const std::string& file) {
+  check_size(text, file);
+  try {
+    root_ = convert(toml::parse(text), file + ":1", [&](auto line) { return fmt::format("{}:{}", file, line); });
+  } catch (const toml::parse_error& error) {
+    throw Error(ExitCode::bad_input, fmt::format("{}:{}: not TOML: {}; correct this line (toml.io tells the syntax)",
+                                                 file, error.source().begin.line, error.description()));
+  }
+}
+
+void Document::set(const std::string& assignment) {
+  const std::string place = "--set " + assignment;
+  const std::size_t equals = assignment.find('=');
+  std::string_view path = trimmed(std::string_view(assignment).substr(0, equals));
+  if (equals == std::string::npos || path.empty() || path.ends_with('.')) {
+    throw Error(ExitCode::bad_input, place + ": not an assignment; write --set key.path=value");
+  }
+  Node* node = &root_;
+  while (!path.empty()) {
+    const std::string name(next_name(path));
+    if (!std::holds_alternative<Table>(node->value)) *node = {place, Table{}};
+    auto& table = std::get<Table>(node->value);
+    Entry* entry = find_entry(table, name);
+    node = entry != nullptr ? &entry->node : &table.emplace_back(Entry{name, {place, Table{}}}).node;
+  }
+  *node = parse_value(std::string(trimmed(std::string_view(assignment).substr(equals + 1))), place);
+}
+
+const Node* Document::find(std::string_view path) const {
+  const Node* node = &root_;
+  while (!path.empty()) {
+    const std::string_view name = next_name(path);
+    const auto* table = std::get_if<Table>(&node->value);
+    if (table == nullptr) return nullptr;
+    const auto found = std::ranges::find(*table, name, &Entry::name);
+    if (found == table->end()) return nullptr;
+    node = &found->node;
+  }
+  return node;
+}
+
+const std::string& Document::place(std::string_view path) const {
+  while (!path.empty()) {
+    if (const Node* node = find(path)) return node->place;
+    path = path.substr(0, path.find('.') == std::string_view::npos ? 0 : path.rfind('.'));
+  }
+  return root_.place;
+}
+
+Node parse_value(const std::string& text, const std::string& place) {
+  try {
+    const toml::table parsed = toml::parse("v = " + text);
+    if (parsed.size() == 1) return convert(*parsed.get("v"), place, [&](auto) { return place; });
+  } catch (const toml::parse_error&) {  // then it is a bare word, unless it was meant to be TOML
+  }
+  if (!text.empty() && text.find_first_of("[{\"'") == 0) {
+    throw Error(ExitCode::bad_input, place + ": the value is not TOML; check its quotes and brackets");
+  }
+  return {place, text};
+}
+
+std::string describe(const Node& node) {
+  struct {
+    std::string operator()(const Table&) const { return "a table"; }
+    std::string operator()(const List& list) const { return fmt::format("a list of {}", list.size()); }
+    std::string operator()(const std::string& text) const {
+      return toml_string(text.size() <= 60 ? text : text.substr(0, 57) + "...");
+    }
+    std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
+    std::string operator()(double real) const { return number(real); }
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(const Date&) const { return "a date"; }
+  } const words;
+  return std::visit(words, node.value);
+}
+
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04x}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+void fail(std::string_view place, std::string_view path, std::string_view words) {
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}: {}", place, path, words));
+}
+
+}  // namespace packmpi::input

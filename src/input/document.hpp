@@ -1,0 +1,58 @@
+/// A scene file as a tree of values that know where they were written. The only door to toml++.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace packmpi::input {
+
+struct Entry;
+struct Node;
+using Table = std::vector<Entry>;  ///< in no particular order
+using List = std::vector<Node>;
+struct Date {};  ///< TOML has dates; no key takes one
+
+struct Node {
+  std::string place;  ///< "FILE:LINE" or "--set key=value"
+  std::variant<Table, List, std::string, std::int64_t, double, bool, Date> value;
+};
+
+struct Entry {
+  std::string name;
+  Node node;
+};
+
+/// The tree and the questions asked of it.
+class Document {
+ public:
+  /// Parses `text` as the file `file`. Throws Error(bad_input), one line, on anything that is not TOML.
+  Document(const std::string& text, const std::string& file);
+
+  /// Puts the value of "key.path=value" in place of what the file says. Throws Error(bad_input).
+  void set(const std::string& assignment);
+
+  [[nodiscard]] const Table& root() const { return std::get<Table>(root_.value); }
+  /// The node at "a.b.c", or null.
+  [[nodiscard]] const Node* find(std::string_view path) const;
+  /// Where `path` is written, or the nearest table around it, or the first line.
+  [[nodiscard]] const std::string& place(std::string_view path) const;
+
+ private:
+  Node root_;
+};
+
+/// A TOML value from text; a bare word is a string. Throws Error(bad_input) beginning with `place`.
+[[nodiscard]] Node parse_value(const std::string& text, const std::string& place);
+
+/// The value for a message, on one line: "abc", 3, 0.5, a table, a list of 2.
+[[nodiscard]] std::string describe(const Node& node);
+
+/// `text` as a TOML basic string, on one line.
+[[nodiscard]] std::string toml_string(std::string_view text);
+
+/// Throws Error(bad_input) "place: path: words".
+[[noreturn]] void fail(std::string_view place, std::string_view path, std::string_view words);
+
+}  // namespace packmpi::input

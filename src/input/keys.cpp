@@ -1,0 +1,264 @@
+/// The key table itself. To add a key: give it a member in input.hpp and a line here.
+#include "input/keys.hpp"
+
+#include <utility>
+
+namespace packmpi::input {
+namespace {
+
+using Default = std::optional<std::string_view>;
+using Place = std::function<Slot(Input&)>;
+using Text = std::string_view;
+
+constexpr Default mandatory = std::nullopt;
+constexpr Range any{};
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+constexpr Range above(double low) { return {low, unbounded, true, false}; }
+constexpr Range at_least(double low) { return {low, unbounded, false, false}; }
+constexpr Range between(double low, double high) { return {low, high, false, false}; }
+constexpr Range inside(double low, double high) { return {low, high, true, true}; }
+
+/// The member of Input a key fills: at(&Input::layers, &Layers::thickness).
+// clang-format off
+template <class... Member>
+Place at(Member... member) {
+  return [=](Input& in) -> Slot { return &(in .* ... .* member); };
+}
+// clang-format on
+
+/// A member of the near field, which the reader makes when the file has the table.
+Place near(double NearField::*member) {
+  return [=](Input& in) -> Slot { return &((*in.near_field).*member); };
+}
+
+Key real(Text path, Place place, const Quantity& quantity, Range range, Default standard, Text doc) {
+  return {.path = path,
+          .slot = std::move(place),
+          .quantity = &quantity,
+          .unit = quantity.si,
+          .range = range,
+          .standard = standard,
+          .doc = doc};
+}
+
+Key reals(Text path, Place place, Count count, const Quantity& quantity, Range range, Default standard, Text doc) {
+  Key key = real(path, std::move(place), quantity, range, standard, doc);
+  key.count = count;
+  return key;
+}
+
+Key whole(Text path, Place place, Range range, Default standard, Text doc) {
+  return real(path, std::move(place), plain, range, standard, doc);
+}
+
+/// A word of a list, a flag or free text: whatever the member's type takes.
+Key word(Text path, Place place, Default standard, Text doc) {
+  return {.path = path, .slot = std::move(place), .standard = standard, .doc = doc};
+}
+
+Key word_of(Text path, Place place, std::vector<Text> choices, Default standard, Text doc) {
+  Key key = word(path, std::move(place), standard, doc);
+  key.choices = std::move(choices);
+  return key;
+}
+
+/// A number whose unit is not one of ours, such as N m^beta.
+Key in_unit(Text unit, Key key) {
+  key.unit = unit;
+  return key;
+}
+
+Key when(Condition condition, Key key) {
+  key.when = condition;
+  return key;
+}
+
+/// Recognised, and refused: words, any number but one, or the key as a whole.
+Key later(std::vector<Text> words, Key key) {
+  key.later = std::move(words);
+  return key;
+}
+Key only(double value, Key key) {
+  key.only = value;
+  return key;
+}
+Key refused(Key key) {
+  key.refused = true;
+  return key;
+}
+
+bool is(const Input& in, SizeDistribution one) { return in.particles.radius.distribution == one; }
+
+constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
+constexpr Condition gaussian{"distribution = \"gaussian\"",
+                             [](const Input& in) { return is(in, SizeDistribution::gaussian); }};
+constexpr Condition graded{"distribution = \"gaussian\" or \"uniform\"",
+                           [](const Input& in) { return !equal.holds(in); }};
+constexpr Condition viscous{"regularisation = \"viscous\"",
+                            [](const Input& in) { return in.contact.regularisation == Regularisation::viscous; }};
+constexpr Condition near_field{"[near_field] is present", [](const Input& in) { return in.near_field.has_value(); }};
+
+// clang-format off
+std::vector<Key> general_keys() {
+  return {
+    whole("schema_version", at(&Input::schema_version), between(1, 1), "1",
+          "Version of these keys; files written for another one are refused, not guessed at."),
+    whole("seed", at(&Input::seed), at_least(0), "1",
+          "Names the pack among all packs of the scene: radii and positions are functions of it."),
+    later({"balanced", "draft"},
+      word_of("fidelity", at(&Input::fidelity), {"paper", "balanced", "draft"}, "paper",
+          "Protocol: \"paper\" is a fixed time step and duration, and every particle moves.")),
+  };
+}
+
+std::vector<Key> container_keys() {
+  const auto container = &Input::container;
+  return {
+    whole("container.dimension", at(container, &Container::dimension), between(2, 3), "3",
+          "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
+    reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
+          "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D."),
+    reals("container.boundary", at(container, &Container::boundary), Count::lateral_axes, plain, any, "wall",
+          "How each lateral axis ends. There is always a floor; the top is open."),
+  };
+}
+
+std::vector<Key> particle_keys() {
+  const auto particles = &Input::particles;
+  const auto radius = &Particles::radius;
+  return {
+    real("particles.density", at(particles, &Particles::density), density, above(0), mandatory, "Density of the material."),
+    real("particles.youngs_modulus", at(particles, &Particles::youngs_modulus), pressure, above(0), mandatory,
+         "Young's modulus E. Softer particles take larger steps and overlap more: 7e-4 r at 1e8 Pa, 3e-3 r at 1e7."),
+    real("particles.poisson_ratio", at(particles, &Particles::poisson_ratio), plain, Range{-1, 0.5, true, false}, mandatory,
+         "Poisson's ratio nu."),
+    later({"lognormal", "weibull", "bidisperse", "grading"},
+      word("particles.radius.distribution", at(particles, radius, &Radius::distribution), mandatory,
+         "Which radii there are. They are drawn before placing, so the distribution is exact.")),
+    when(equal, real("particles.radius.value", at(particles, radius, &Radius::value), length, above(0), mandatory,
+         "Radius of every particle.")),
+    when(gaussian, real("particles.radius.mean", at(particles, radius, &Radius::mean), length, above(0), mandatory,
+         "Mean before truncation.")),
+    when(gaussian, real("particles.radius.sd", at(particles, radius, &Radius::sd), length, above(0), mandatory,
+         "Standard deviation before truncation.")),
+    when(graded, real("particles.radius.min", at(particles, radius, &Radius::min), length, above(0), mandatory,
+         "Smallest radius.")),
+    when(graded, real("particles.radius.max", at(particles, radius, &Radius::max), length, above(0), mandatory,
+         "Largest radius.")),
+    when(graded, later({"mass"},
+      word_of("particles.radius.weighting", at(particles, radius, &Radius::weighting), {"number", "mass"}, mandatory,
+         "What the distribution counts: \"number\", the share of particles."))),
+  };
+}
+
+std::vector<Key> layer_keys() {
+  const auto layers = &Input::layers;
+  return {
+    real("layers.thickness", at(layers, &Layers::thickness), length, above(0), mandatory,
+         "Height h_0 of the region above the pile that a layer is inserted into; the paper takes 0.2 H_d."),
+    real("layers.fraction", at(layers, &Layers::fraction), ratio, inside(0, 1), mandatory,
+         "Solid fraction phi_0 of that region after insertion. Random insertion ends at 0.547 in 2D, 0.384 in 3D."),
+    real("layers.duration", at(layers, &Layers::duration), time, above(0), "1.0",
+         "Simulated time of dynamics after each layer."),
+    word("layers.height", at(layers, &Layers::height), "surface",
+         "What must reach H_d: \"surface\", the mean over lateral columns of the highest top; \"highest\", the one highest top."),
+    reals("layers.velocity", at(layers, &Layers::velocity), Count::axes, velocity, any, "0.0",
+         "Velocity of a particle when inserted; the last entry is vertical, upward."),
+    reals("layers.spin", at(layers, &Layers::spin), Count::spin_axes, angular_velocity, any, "0.0",
+         "Spin of a particle when inserted; in 2D one number, about the plane's normal."),
+    whole("layers.attempts", at(layers, &Layers::attempts), between(1, 1e9), "10000",
+         "Positions a particle may try before insertion gives up with an error."),
+    whole("layers.maximum", at(layers, &Layers::maximum), between(0, 1 << 24), "0",
+         "Stop after so many layers even below H_d; 0: no limit."),
+  };
+}
+
+std::vector<Key> force_keys() {
+  const auto contact = &Input::contact;
+  return {
+    real("jamming.gravity", at(&Input::jamming, &Jamming::gravity), acceleration, above(0), mandatory,
+         "The jamming force of the paper: a downward acceleration, usually below 9.81 to keep impacts soft."),
+    real("contact.damping_ratio", at(contact, &Contact::damping_ratio), plain, between(0, 1), "0.1",
+         "Fraction xi of critical damping of the normal contact; restitution depends on it alone."),
+    real("contact.friction", at(contact, &Contact::friction), plain, at_least(0), "0.2",
+         "Coefficient mu_d of sliding friction between particles."),
+    real("contact.wall_friction", at(contact, &Contact::wall_friction), plain, at_least(0), "=contact.friction",
+         "The same between particles and walls."),
+    word("contact.friction_velocity", at(contact, &Contact::friction_velocity), "contact",
+         "Slip is measured at the contact point, spin included, or between the centres, as printed in the paper's eq. (14)."),
+    word("contact.regularisation", at(contact, &Contact::regularisation), "stop",
+         "Friction at small slip: \"stop\" ends the slip within one step; \"viscous\" within slip_time; \"none\" is the literal law."),
+    when(viscous, real("contact.slip_time", at(contact, &Contact::slip_time), time, above(0), mandatory,
+         "Time in which friction may end a slip; at least two time steps.")),
+    word("contact.tension_cutoff", at(contact, &Contact::tension_cutoff), "true",
+         "Clamp the normal force at zero, so that parting particles do not pull."),
+    word("contact.wall", at(contact, &Contact::wall), "rigid",
+         "Stiffness of walls: rigid, or of the particles' material."),
+    real("drag.coefficient", at(&Input::drag, &Drag::coefficient), drag_factor, at_least(0), "0.0",
+         "c_fluid of the force -c (v - v_fluid) on each particle; the paper takes 0.005. 0: no drag."),
+    reals("drag.fluid_velocity", at(&Input::drag, &Drag::fluid_velocity), Count::axes, velocity, any, "0.0",
+         "Velocity v_fluid of the fluid, everywhere the same."),
+  };
+}
+
+std::vector<Key> near_field_keys() {
+  return {
+    when(near_field, in_unit("N m^beta1", real("near_field.alpha1", near(&NearField::alpha1), plain, any, "0.0",
+         "Attraction: pairs pull with alpha1 d^-beta1 at centre distance d."))),
+    when(near_field, real("near_field.beta1", near(&NearField::beta1), plain, any, "0.0", "Exponent of the attraction.")),
+    when(near_field, in_unit("N m^beta2", real("near_field.alpha2", near(&NearField::alpha2), plain, any, "0.0",
+         "Repulsion: pairs push with alpha2 d^-beta2."))),
+    when(near_field, real("near_field.beta2", near(&NearField::beta2), plain, any, "0.0", "Exponent of the repulsion.")),
+    when(near_field, real("near_field.cutoff", near(&NearField::cutoff), length, above(0), mandatory,
+         "Centre distance beyond which the near field is zero.")),
+  };
+}
+
+std::vector<Key> dynamics_keys() {
+  const auto dynamics = &Input::dynamics;
+  return {
+    word("dynamics.rotation", at(dynamics, &Dynamics::rotation), "true",
+         "Particles spin. Off: there is no spin state at all, and slip is measured between centres."),
+    only(0.0, real("dynamics.theta", at(dynamics, &Dynamics::theta), plain, between(0, 1), "0.0",
+         "Time integration: 0 is the explicit Algorithm 2 of the paper.")),
+    real("dynamics.time_step", at(dynamics, &Dynamics::time_step), time, above(0), "auto",
+         "Time step, or \"auto\": from the contact duration, eq. (23)."),
+    later({"settled"}, word("dynamics.stop", at(dynamics, &Dynamics::stop), "duration",
+         "What ends the dynamics of a layer: its duration.")),
+    later({"mixed"}, word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
+         "Arithmetic of the contact law.")),
+    only(0.0, whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
+         "0: all particles move.")),
+  };
+}
+
+std::vector<Key> program_keys() {
+  return {
+    word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
+         "How lateral columns are shared among ranks: slices, pencils, or METIS parts. Changes no bit of the pack."),
+    only(1.0, whole("ensemble.sets", at(&Input::ensemble, &Ensemble::sets), between(1, 1 << 24), "1", "Sets of packs.")),
+    only(1.0, whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 24), "1", "Packs of a set.")),
+    refused(word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("")", "Wall time between checkpoints.")),
+    word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),
+    real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
+         "Simulated time between rows of NAME.steps.csv; 0: a row each step."),
+    word("petsc.options", at(&Input::petsc, &Petsc::options), R"("")", "Passed to PETSc as they are: \"-log_view\"."),
+  };
+}
+// clang-format on
+
+}  // namespace
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> table = [] {
+    std::vector<Key> all;
+    for (const auto& part : {general_keys(), container_keys(), particle_keys(), layer_keys(), force_keys(),
+                             near_field_keys(), dynamics_keys(), program_keys()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace packmpi::input

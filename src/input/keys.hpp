@@ -1,0 +1,80 @@
+/// The key table: every key of a scene file, declared once. The reader, the effective input and the reference in
+/// doc/input.md all come from it.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "input/input.hpp"
+#include "input/units.hpp"
+
+namespace packmpi::input {
+
+/// Where a key's value goes. Its type decides what the file may say.
+using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
+                          Vec3*, std::vector<double>*, std::vector<Boundary>*, SizeDistribution*, HeightRule*,
+                          FrictionVelocity*, Regularisation*, WallStiffness*, StopRule*, Precision*, Decomposition*>;
+
+/// An interval of numbers; infinity and NaN are in none.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false, high_open = false;  ///< the bound itself is outside
+
+  [[nodiscard]] bool contains(double value) const noexcept;
+  [[nodiscard]] std::string words() const;  ///< "> 0", ">= 0 and < 1", ""
+};
+
+/// How many numbers a list has.
+enum class Count { one, axes, lateral_axes, spin_axes };
+
+/// When a key belongs to a scene.
+struct Condition {
+  std::string_view words = "";            ///< `distribution = "equal"`
+  bool (*holds)(const Input&) = nullptr;  ///< none: always
+};
+
+struct Key {
+  std::string_view path;  ///< "table.key"
+  std::function<Slot(Input&)> slot;
+  const Quantity* quantity = &plain;
+  std::string_view unit = "";  ///< as documented; the quantity's SI unit unless it has none
+  Range range = {};
+  Count count = Count::one;
+  std::optional<std::string_view> standard = {};  ///< default, a TOML value (of each entry of a list), or a key's path
+                                                  ///< after "="; none: mandatory
+  std::string_view doc = "";
+  Condition when = {};
+  std::vector<std::string_view> choices = {};  ///< words of a text key; those of an enumeration are known by its type
+  std::vector<std::string_view> later = {};    ///< words that are recognised and refused
+  std::optional<double> only = {};             ///< the one number that is not refused
+  bool refused = false;                        ///< the whole key is recognised and refused
+
+  [[nodiscard]] bool applies(const Input& in) const { return !refused && (when.holds == nullptr || when.holds(in)); }
+};
+
+/// The table, in the order of reading: a key stands after those that its condition, count and default look at.
+[[nodiscard]] const std::vector<Key>& keys();
+
+/// The key at `path`, or null.
+[[nodiscard]] const Key* find_key(std::string_view path);
+
+/// Entries the key's list has in this scene.
+[[nodiscard]] std::size_t entries(const Key& key, const Input& in);
+
+/// The words the key can have, those to be refused left out; empty for a key of another type.
+[[nodiscard]] std::vector<std::string_view> choices(const Key& key);
+
+/// What the key wants: "a number > 0 [m]", "true or false", "\"stop\", \"viscous\" or \"none\"".
+[[nodiscard]] std::string wanted(const Key& key);
+
+/// "a, b or c".
+[[nodiscard]] std::string joined(std::span<const std::string_view> words, std::string_view last = "or");
+
+}  // namespace packmpi::input

@@ -1,0 +1,168 @@
+#include "input/read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "input/checks.hpp"
+#include "input/document.hpp"
+#include "input/keys.hpp"
+#include "input/values.hpp"
+
+namespace packmpi::input {
+namespace {
+
+/// "a.b.c" into "a.b" and "c".
+std::pair<std::string_view, std::string_view> split(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string_view::npos) return {"", path};
+  return {path.substr(0, dot), path.substr(dot + 1)};
+}
+
+/// The names that may stand directly in `table`: keys and tables, in the key table's order.
+std::vector<std::string> names_in(std::string_view table) {
+  const std::string prefix = table.empty() ? "" : std::string(table) + ".";
+  std::vector<std::string> names;
+  for (const Key& key : keys()) {
+    if (!key.path.starts_with(prefix)) continue;
+    const std::string_view rest = key.path.substr(prefix.size());
+    const std::string name(rest.substr(0, rest.find('.')));
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+std::string list(const std::vector<std::string>& names) {
+  return joined(std::vector<std::string_view>(names.begin(), names.end()), "and");
+}
+
+/// What the user may have meant by the unknown `name` in `table`.
+std::string suggestion(const std::string& table, const std::string& name) {
+  const std::vector<std::string> siblings = names_in(table);
+  if (const auto near = text::closest(name, siblings)) return fmt::format("did you mean \"{}\"?", *near);
+  for (const Key& key : keys()) {
+    const auto [home, last] = split(key.path);
+    if (last == name)
+      return home.empty() ? fmt::format("\"{}\" belongs above all tables", name)
+                          : fmt::format("\"{}\" belongs into [{}]", name, home);
+  }
+  const std::string where = table.empty() ? "a scene has" : fmt::format("[{}] has", table);
+  return fmt::format("{} {}", where, list(siblings));
+}
+
+/// A name as it would be written in TOML; control characters escaped, so that it stays on one line.
+std::string name_text(const std::string& name) {
+  const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-';
+  });
+  return bare ? name : toml_string(name);
+}
+
+void refuse_unknown(const Table& table, const std::string& path) {
+  const std::vector<std::string> known = names_in(path);
+  for (const Entry& entry : table) {
+    const std::string here = (path.empty() ? "" : path + ".") + name_text(entry.name);
+    if (std::ranges::find(known, entry.name) == known.end()) {
+      fail(entry.node.place, here, "unknown key; " + suggestion(path, entry.name));
+    }
+    if (find_key(here) != nullptr) continue;
+    const auto* inner = std::get_if<Table>(&entry.node.value);
+    if (inner == nullptr) {
+      fail(entry.node.place, here,
+           fmt::format("is {}; give a table with {}", describe(entry.node), list(names_in(here))));
+    }
+    refuse_unknown(*inner, here);
+  }
+}
+
+/// Keys and words that later versions will have: refused by name, before anything that belongs to them is called
+/// unknown.
+void refuse_later(const Document& document) {
+  for (const Key& key : keys()) {
+    const Node* node = document.find(key.path);
+    if (node == nullptr) continue;
+    if (key.refused) fail(node->place, key.path, "is not available in this version; remove it");
+    const auto* text = std::get_if<std::string>(&node->value);
+    if (text == nullptr || std::ranges::find(key.later, *text) == key.later.end()) continue;
+    fail(node->place, key.path,
+         fmt::format("{} is not available in this version; use {}", describe(*node), wanted(key)));
+  }
+}
+
+void read_key(const Key& key, const Document& document, Input& in) {
+  const Node* node = document.find(key.path);
+  if (!key.applies(in)) {
+    if (node != nullptr) fail(node->place, key.path, fmt::format("belongs to {} only; remove it", key.when.words));
+  } else if (node != nullptr) {
+    store(key, *node, in);
+  } else if (key.standard) {
+    store_default(key, in);
+  } else {
+    const bool is_list = key.count != Count::one;
+    fail(document.place(key.path), key.path,
+         is_list ? fmt::format("is missing; give a list of {}, each {}", entries(key, in), wanted(key))
+                 : fmt::format("is missing; give {}", wanted(key)));
+  }
+}
+
+/// The scene with every default filled in. Reading it back gives the same scene and the same text.
+std::string effective(Input in) {
+  std::string text, open;
+  for (const Key& key : keys()) {
+    if (!key.applies(in)) continue;
+    const auto [table, name] = split(key.path);
+    if (table != open) text += fmt::format("\n[{}]\n", table);
+    open = table;
+    text += fmt::format("{} = {}\n", name, written(key, in));
+  }
+  return text;
+}
+
+std::string file_text(const std::string& path) {
+  const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
+    refuse("is a folder; give a scene file (.toml)");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("cannot be opened ({}); check the path", std::generic_category().message(errno)));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) refuse("cannot be read to its end; check the file system");
+  return text;
+}
+
+}  // namespace
+
+Input parse(const std::string& text, const std::string& path, const Overrides& overrides) {
+  Document document(text, path);
+  for (const std::string& assignment : overrides.set) document.set(assignment);
+  refuse_later(document);
+  refuse_unknown(document.root(), "");
+  Input in;
+  in.file = path;
+  in.name = std::filesystem::path(path).stem().string();
+  if (document.find("near_field") != nullptr) in.near_field.emplace();
+  for (const Key& key : keys()) read_key(key, document, in);
+  check(in, document);
+  in.effective = effective(in);
+  return in;
+}
+
+Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides) {
+  std::string text;
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) text = file_text(path);
+  });
+  text = comm.broadcast(0, text);
+  Input in;
+  comm::agree_on(comm, [&] { in = parse(text, path, overrides); });
+  return in;
+}
+
+}  // namespace packmpi::input

@@ -1,0 +1,38 @@
+/// The words of every enumeration of a scene file, in the order of its enumerators.
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "input/input.hpp"
+
+namespace packmpi::input {
+
+template <class Enum>
+inline constexpr std::array<std::string_view, 0> words_of{};
+
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
+template <>
+inline constexpr std::array<std::string_view, 3> words_of<SizeDistribution>{"equal", "gaussian", "uniform"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<HeightRule>{"surface", "highest"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<FrictionVelocity>{"contact", "centre"};
+template <>
+inline constexpr std::array<std::string_view, 3> words_of<Regularisation>{"stop", "viscous", "none"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<WallStiffness>{"rigid", "material"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<StopRule>{"duration", "settled"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<Precision>{"double", "mixed"};
+template <>
+inline constexpr std::array<std::string_view, 3> words_of<Decomposition>{"slab", "pencil", "metis"};
+
+/// The word a scene file uses for `value`.
+template <class Enum>
+[[nodiscard]] constexpr std::string_view word(Enum value) {
+  return words_of<Enum>.at(static_cast<std::size_t>(value));
+}
+
+}  // namespace packmpi::input
