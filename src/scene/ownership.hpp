@@ -11,17 +11,17 @@
 
 namespace packmpi::scene {
 
-/// The column -> rank table, whichever way it was filled (slab, pencil, METIS). The halo, migration and RSA see only this.
-/// Memory: cut positions for slab and pencil, at most 65,536 tiles of columns for METIS; never O(particles).
+/// The column -> rank table, whichever way it was filled (slab, pencil, METIS). The halo, migration and RSA see only
+/// this. Memory: cut positions for slab and pencil, at most 65,536 tiles of columns for METIS; never O(particles).
 class Ownership {
  public:
   /// Collective. Equal shares. Throws Error(bad_input) on all ranks if there are more ranks than the decomposition can
   /// give columns to, with the largest usable number.
   Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, input::Decomposition kind);
 
-  /// Collective. Shares of equal weight; `mine` are the weights of the columns this rank owns, in the order of columns().
-  /// True if a new table was taken, which happens only if it lowers the largest share by 5 %. Not in the step loop: uses an
-  /// O(ranks) array for the moment of the decision.
+  /// Collective. Shares of equal weight; `mine` are the weights of the columns this rank owns, in the order of
+  /// columns(). True if a new table was taken, which happens only if it lowers the largest share by 5 %. Not in the
+  /// step loop: uses an O(ranks) array for the moment of the decision.
   bool rebalance(std::span<const std::int64_t> mine);
 
   [[nodiscard]] const geometry::ColumnGrid& grid() const noexcept { return grid_; }
@@ -34,22 +34,22 @@ class Ownership {
  private:
   /// The table itself, in the form its kind needs.
   struct Table {
-    std::vector<int> cuts_x, cuts_y;   // slab, pencil: first column coordinate of each part, ascending, and the end
-    std::vector<Rank> tiles;           // METIS: owner of each tile
+    std::vector<int> cuts_x, cuts_y;  // slab, pencil: first column coordinate of each part, ascending, and the end
+    std::vector<Rank> tiles;          // METIS: owner of each tile
   };
   void check_rank_count() const;
-  [[nodiscard]] std::size_t long_axis() const;      // the longer lateral axis: slabs are cut across it
-  [[nodiscard]] std::array<int, 2> tiles() const;   // tiles on each axis
+  [[nodiscard]] std::size_t long_axis() const;     // the longer lateral axis: slabs are cut across it
+  [[nodiscard]] std::array<int, 2> tiles() const;  // tiles on each axis
   [[nodiscard]] std::size_t weight_count() const;
-  [[nodiscard]] Table cut(std::span<const std::int64_t> weights) const;   // collective for METIS
+  [[nodiscard]] Table cut(std::span<const std::int64_t> weights) const;  // collective for METIS
   [[nodiscard]] Rank owner(const Table& table, geometry::ColumnIndex column) const noexcept;
-  [[nodiscard]] bool worth_it(const Table& table, std::span<const std::int64_t> mine) const;   // collective
-  void collect();   // columns_ and neighbors_ from the table
+  [[nodiscard]] bool worth_it(const Table& table, std::span<const std::int64_t> mine) const;  // collective
+  void collect();  // columns_ and neighbors_ from the table
 
   const comm::Comm* comm_;
   geometry::ColumnGrid grid_;
   input::Decomposition kind_;
-  int tile_ = 1;   // columns a tile on each axis
+  int tile_ = 1;  // columns a tile on each axis
   Table table_;
   std::vector<geometry::ColumnIndex> columns_;
   std::vector<Rank> neighbors_;

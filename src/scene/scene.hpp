@@ -13,11 +13,11 @@ namespace packmpi::scene {
 struct Features {
   int dimension = 3;
   bool rotation = true;
-  bool friction = true;     ///< mu > 0 at particles or walls
-  bool drag = true;         ///< coefficient > 0
+  bool friction = true;  ///< mu > 0 at particles or walls
+  bool drag = true;      ///< coefficient > 0
   bool near_field = false;
-  bool graded = false;      ///< radii differ
-  bool periodic = false;    ///< any lateral axis
+  bool graded = false;    ///< radii differ
+  bool periodic = false;  ///< any lateral axis
 
   [[nodiscard]] constexpr particles::Layout layout() const { return particles::layout_of(dimension, rotation); }
   friend constexpr bool operator==(const Features&, const Features&) = default;
@@ -28,11 +28,11 @@ struct Scene {
   input::Input in;
   geometry::Box box;
   Features features;
-  Sizes sizes;              ///< the size distribution: radius of (layer, particle), bounds
-  double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
-  double skin = 0.0;        ///< [m] added to reach in neighbour lists; does not change any result
-  double time_step = 0.0;   ///< [s]
-  double force_quantum = 0.0;   ///< [N] a power of two: forces are summed as integers of this unit
+  Sizes sizes;             ///< the size distribution: radius of (layer, particle), bounds
+  double reach = 0.0;      ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
+  double skin = 0.0;       ///< [m] added to reach in neighbour lists; does not change any result
+  double time_step = 0.0;  ///< [s]
+  double force_quantum = 0.0;  ///< [N] a power of two: forces are summed as integers of this unit
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].
   [[nodiscard]] double column_width() const noexcept { return reach + skin; }
@@ -45,8 +45,8 @@ struct Scene {
 /// CC16 eq. (23): duration of a Hertz contact [s], for reduced mass [kg], radius [m], modulus [Pa], impact speed [m/s].
 [[nodiscard]] double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed);
 
-/// The limit of eq. (23) for the smallest particles, duration / 5 [s]. A step between this and the limit of the mean particle is
-/// taken with a warning: the paper's own example 5.2 has one.
+/// The limit of eq. (23) for the smallest particles, duration / 5 [s]. A step between this and the limit of the mean
+/// particle is taken with a warning: the paper's own example 5.2 has one.
 [[nodiscard]] double safe_time_step(const input::Input& in, const Sizes& sizes);
 
 }  // namespace packmpi::scene

@@ -1,0 +1,167 @@
+#include "scene/scene.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace packmpi::scene {
+namespace {
+
+// Neighbour lists keep pairs up to skin beyond touching. The rate is flat between 0.075 and 0.1 r (doc/performance.md).
+constexpr double skin_per_radius = 0.1;
+// Room above the largest force of a regular impact before the integer sums give up, and their range in quanta.
+constexpr double force_headroom = 256.0;
+constexpr double largest_quanta = 1125899906842624.0;  // 2^50, see dynamics/kernel.hpp
+
+double mass(const input::Particles& particles, double radius) {
+  return particles.density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
+double pair_modulus(const input::Particles& particles) {
+  return particles.youngs_modulus / (2.0 * (1.0 - particles.poisson_ratio * particles.poisson_ratio));
+}
+
+// Speed at which a particle inserted at the top of a layer's region reaches its bottom; eq. (23) wants one.
+double impact_speed(const input::Input& in, double drop) {
+  const Vec3& v = in.layers.velocity;
+  return std::sqrt(2.0 * in.jamming.gravity * drop + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+double step_limit(const input::Input& in, double radius) {
+  const double speed = impact_speed(in, in.layers.thickness);
+  return contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, pair_modulus(in.particles), speed) / 5.0;
+}
+
+[[noreturn]] void refuse(const input::Input& in, const std::string& words) {
+  throw Error(ExitCode::bad_input, in.file + ": " + words);
+}
+
+double choose_time_step(const input::Input& in, const Sizes& sizes) {
+  if (!in.dynamics.time_step) {
+    const double limit = step_limit(in, sizes.smallest());
+    if (!std::isfinite(limit)) {
+      refuse(in,
+             "dynamics.time_step: \"auto\" needs gravity or a speed at insertion to find the impact speed of eq. (23); "
+             "give a number in seconds");
+    }
+    return limit;
+  }
+  const double limit = step_limit(in, sizes.mean());
+  if (*in.dynamics.time_step > limit) {
+    refuse(in,
+           fmt::format("dynamics.time_step: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m and "
+                       "impact speed {:.3g} m/s; use a smaller step, \"auto\", or softer particles",
+                       *in.dynamics.time_step, limit, sizes.mean(), impact_speed(in, in.layers.thickness)));
+  }
+  return *in.dynamics.time_step;
+}
+
+void check_drag(const input::Input& in, const Sizes& sizes, double time_step) {
+  const double limit = mass(in.particles, sizes.smallest()) / in.drag.coefficient;
+  if (time_step > limit) {
+    refuse(in,
+           fmt::format("drag.coefficient: {:g} N s/m stops the lightest particle within {:.3g} s, less than one time "
+                       "step of {:g} s; use a smaller step or coefficient",
+                       in.drag.coefficient, limit, time_step));
+  }
+}
+
+void check_periodic(const input::Input& in, const Scene& scene) {
+  for (int axis = 0; axis < scene.box.lateral_axes(); ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double least = 3.0 * scene.column_width();
+    if (scene.box.periodic[a] && scene.box.size[a] < least) {
+      refuse(in, fmt::format(
+                     "container.size: a periodic axis must be at least {:.6g} m here (three interaction ranges), so "
+                     "that no particle meets two images of another; axis {} is {:g} m",
+                     least, "xy"[a], scene.box.size[a]));
+    }
+  }
+}
+
+// Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
+// never above the elastic force at an overlap of a whole radius. Beyond it the run stops with a message (exit 4).
+double largest_force(const Scene& scene) {
+  const input::Input& in = scene.in;
+  const double r = scene.sizes.largest();
+  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles) * std::sqrt(r);  // against a rigid wall: r* = r, m* = m
+  const double m = mass(in.particles, r);
+  const double drop = scene.box.height() + 2.0 * in.layers.thickness;
+  const double speed = impact_speed(in, drop);
+  const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
+  const double column = m * in.jamming.gravity * drop / r;
+  const double elastic = k * r * std::sqrt(r);
+  double force = std::max(k * overlap * std::sqrt(overlap), column);
+  force = force > 0.0 ? std::min(force_headroom * force, elastic) : elastic;
+  if (in.near_field) {
+    const auto& nf = *in.near_field;
+    const double d = scene.sizes.smallest();  // deep inside contact
+    const double near = std::abs(nf.alpha1) * std::pow(d, -nf.beta1) + std::abs(nf.alpha2) * std::pow(d, -nf.beta2);
+    force = std::max(force, 4.0 * near);
+  }
+  return force * (1.0 + std::max(in.contact.friction, in.contact.wall_friction));
+}
+
+double choose_quantum(const Scene& scene) {
+  const double exact = largest_force(scene) / largest_quanta;
+  if (!std::isfinite(exact) || exact <= 0.0) {
+    refuse(scene.in,
+           "particles: the forces of these radii and moduli are out of the range of numbers; check the units");
+  }
+  int exponent = 0;
+  std::frexp(exact, &exponent);  // exact <= 2^exponent
+  return std::ldexp(1.0, exponent);
+}
+
+Features features_of(const input::Input& in) {
+  Features f;
+  f.dimension = in.container.dimension;
+  f.rotation = in.dynamics.rotation;
+  f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  f.drag = in.drag.coefficient > 0.0;
+  f.near_field = in.near_field.has_value();
+  f.graded = in.particles.radius.distribution != input::SizeDistribution::equal;
+  f.periodic = std::ranges::any_of(in.container.boundary, [](auto b) { return b == input::Boundary::periodic; });
+  return f;
+}
+
+geometry::Box box_of(const input::Container& container) {
+  geometry::Box box;
+  box.dimension = container.dimension;
+  std::ranges::copy(container.size, box.size.begin());
+  for (std::size_t axis = 0; axis < container.boundary.size(); ++axis) {
+    box.periodic[axis] = container.boundary[axis] == input::Boundary::periodic;
+  }
+  return box;
+}
+
+}  // namespace
+
+double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed) {
+  return 2.87 *
+         std::pow(reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed), 0.2);
+}
+
+double safe_time_step(const input::Input& in, const Sizes& sizes) { return step_limit(in, sizes.smallest()); }
+
+Scene build(const input::Input& in) {
+  Scene scene;
+  scene.in = in;
+  scene.box = box_of(in.container);
+  scene.features = features_of(in);
+  scene.sizes = Sizes(in.particles.radius, in.seed);
+  scene.reach = 2.0 * scene.sizes.largest();
+  if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
+  scene.skin = skin_per_radius * scene.sizes.largest();
+  scene.time_step = choose_time_step(in, scene.sizes);
+  if (scene.features.drag) check_drag(in, scene.sizes, scene.time_step);
+  check_periodic(in, scene);
+  scene.force_quantum = choose_quantum(scene);
+  return scene;
+}
+
+}  // namespace packmpi::scene
