@@ -10,7 +10,8 @@
 namespace packmpi::neighbor {
 
 /// The columns of a rank with their surroundings. Made anew when the ownership changes. Local columns are numbered: own
-/// columns first, rows along the shorter extent fastest (that keeps the window of the half list small), then the ghost columns.
+/// columns first, rows along the shorter extent fastest (that keeps the window of the half list small), then the ghost
+/// columns.
 class LocalColumns {
  public:
   explicit LocalColumns(const scene::Ownership& ownership, Rank rank);
@@ -19,8 +20,11 @@ class LocalColumns {
   [[nodiscard]] int total() const noexcept { return static_cast<int>(global_.size()); }
   /// Local number of a global column; -1 if it is neither ours nor touching ours.
   [[nodiscard]] int local(geometry::ColumnIndex column) const noexcept;
-  [[nodiscard]] geometry::ColumnIndex global(int local) const noexcept { return global_[static_cast<std::size_t>(local)]; }
-  /// Columns touching own column `local` that a half list must visit: own ones with a higher number, and all ghost columns.
+  [[nodiscard]] geometry::ColumnIndex global(int local) const noexcept {
+    return global_[static_cast<std::size_t>(local)];
+  }
+  /// Columns touching own column `local` that a half list must visit: own ones with a higher number, and all ghost
+  /// columns.
   [[nodiscard]] std::span<const int> forward(int local) const noexcept;
 
   /// A rank that needs particles of own column `local`, and the columns of its that touch it.
@@ -36,18 +40,19 @@ class LocalColumns {
   void number_own(const scene::Ownership& ownership);
   int own_ = 0;
   std::vector<geometry::ColumnIndex> global_;
-  std::vector<std::pair<geometry::ColumnIndex, int>> ghost_lookup_;   // sorted
-  std::vector<int> own_lookup_;   // dense over the bounding rectangle of the own columns; -1 elsewhere
+  std::vector<std::pair<geometry::ColumnIndex, int>> ghost_lookup_;  // sorted
+  std::vector<int> own_lookup_;  // dense over the bounding rectangle of the own columns; -1 elsewhere
   int x0_ = 0, y0_ = 0, width_ = 0, depth_ = 0, nx_ = 1;
   std::vector<int> forward_start_, forward_;
   std::vector<Border> borders_;
 };
 
-/// Slots of the particles in each cell: cell (column c, level k) holds slots start[c * levels + k] .. start[c * levels + k + 1).
+/// Slots of the particles in each cell: cell (column c, level k) holds slots start[c * levels + k] .. start[c * levels
+/// + k + 1).
 struct Cells {
   int levels = 1;
-  double inverse_height = 0.0;   ///< [1/m] of a cell
-  std::vector<LocalIndex> start; ///< total columns * levels + 1
+  double inverse_height = 0.0;    ///< [1/m] of a cell
+  std::vector<LocalIndex> start;  ///< total columns * levels + 1
 
   [[nodiscard]] int level(double vertical) const noexcept {
     const double k = vertical * inverse_height;

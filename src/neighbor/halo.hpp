@@ -13,11 +13,11 @@ namespace packmpi::neighbor {
 /// Which owned particles a neighbour rank needs.
 struct Sends {
   Rank rank;
-  std::vector<LocalIndex> slots;   ///< ascending
+  std::vector<LocalIndex> slots;  ///< ascending
 };
 
-/// A plan made at each rebuild and executed in each step (PetscSF underneath). Ghosts carry their owner's bits, unshifted:
-/// periodic images are taken in the pair formula.
+/// A plan made at each rebuild and executed in each step (PetscSF underneath). Ghosts carry their owner's bits,
+/// unshifted: periodic images are taken in the pair formula.
 class Halo {
  public:
   explicit Halo(const comm::Comm& comm, const particles::Layout& layout);
@@ -25,8 +25,8 @@ class Halo {
   Halo(const Halo&) = delete;
   Halo& operator=(const Halo&) = delete;
 
-  /// Collective. Sends whole records and ids of `sends` (one entry for each neighbour rank, ascending) and appends what comes
-  /// as ghosts, in order of arrival rank. Call order_ghosts() next, then refresh() at will.
+  /// Collective. Sends whole records and ids of `sends` (one entry for each neighbour rank, ascending) and appends what
+  /// comes as ghosts, in order of arrival rank. Call order_ghosts() next, then refresh() at will.
   void plan(particles::Store& store, std::vector<Sends> sends);
 
   /// Local. Moves ghost k (arrival order) to slot owned() + place[k].
@@ -37,19 +37,19 @@ class Halo {
 
   /// Exact counters since construction.
   struct Counters {
-    std::int64_t messages = 0;   ///< sent in refresh()
-    std::int64_t bytes = 0;      ///< sent in refresh()
+    std::int64_t messages = 0;  ///< sent in refresh()
+    std::int64_t bytes = 0;     ///< sent in refresh()
   };
   [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
-  [[nodiscard]] std::size_t bytes() const noexcept;   ///< allocated
+  [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
 
  private:
-  struct Graph;   // the PetscSF and its unit type
+  struct Graph;  // the PetscSF and its unit type
   const comm::Comm* comm_;
   particles::Layout layout_;
   std::unique_ptr<Graph> graph_;
-  std::vector<LocalIndex> send_slots_;      // all sends, in rank order: the roots
-  std::vector<LocalIndex> arrival_slot_;    // slot of the k-th arriving ghost: the leaves
+  std::vector<LocalIndex> send_slots_;    // all sends, in rank order: the roots
+  std::vector<LocalIndex> arrival_slot_;  // slot of the k-th arriving ghost: the leaves
   std::vector<double> send_buffer_, receive_buffer_;
   std::int64_t messages_per_refresh_ = 0;
   Counters counters_;

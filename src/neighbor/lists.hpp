@@ -16,7 +16,7 @@ enum class Wall : std::int32_t { floor = 0, x_low = 1, x_high = 2, y_low = 3, y_
 struct PairList {
   std::vector<LocalIndex> first;
   std::vector<LocalIndex> second;
-  LocalIndex window = 1;   ///< 1 + largest second - first over pairs of two owned particles
+  LocalIndex window = 1;  ///< 1 + largest second - first over pairs of two owned particles
 };
 
 /// Owned particles within skin of a wall, ascending in particle; one entry for each (particle, wall).

@@ -1,0 +1,129 @@
+// The Verlet lists from the sorted cells: the hot part of a rebuild.
+#include <algorithm>
+
+#include "neighbor/neighborhood.hpp"
+
+namespace packmpi::neighbor {
+namespace {
+
+// What one search needs, by value so that the inner loop keeps it in registers.
+struct Search {
+  const double* x;
+  const double* y;
+  const double* z;            // null in 2D
+  const double* radius;       // null: equal radii
+  double reach;               // equal: the whole cut-off; graded: cut-off without the radii
+  double period_x, period_y;  // 0: wall
+};
+
+// Slots of [begin, end) within the cut-off of slot i, appended at out; returns the new end. Branch-free: each candidate
+// is written and kept by moving the end.
+template <bool Graded, bool Periodic, bool ThreeD>
+LocalIndex* find(const Search& s, LocalIndex i, LocalIndex begin, LocalIndex end, LocalIndex* out) {
+  const double xi = s.x[i];
+  const double yi = s.y[i];
+  const double zi = ThreeD ? s.z[i] : 0.0;
+  const double base = Graded ? s.reach + s.radius[i] : s.reach;
+  for (LocalIndex j = begin; j < end; ++j) {
+    double dx = s.x[j] - xi;
+    double dy = s.y[j] - yi;
+    if constexpr (Periodic) {
+      if (s.period_x > 0.0) dx = geometry::shortest(dx, s.period_x);
+      if (ThreeD && s.period_y > 0.0) dy = geometry::shortest(dy, s.period_y);
+    }
+    double squared = dx * dx + dy * dy;
+    if constexpr (ThreeD) squared += (s.z[j] - zi) * (s.z[j] - zi);
+    const double cut = Graded ? base + s.radius[j] : base;
+    *out = j;
+    out += static_cast<int>(squared < cut * cut);
+  }
+  return out;
+}
+
+using Find = LocalIndex* (*)(const Search&, LocalIndex, LocalIndex, LocalIndex, LocalIndex*);
+
+Find choose(bool graded, bool periodic, bool three_d) {
+  if (three_d) {
+    if (graded) return periodic ? find<true, true, true> : find<true, false, true>;
+    return periodic ? find<false, true, true> : find<false, false, true>;
+  }
+  if (graded) return periodic ? find<true, true, false> : find<true, false, false>;
+  return periodic ? find<false, true, false> : find<false, false, false>;
+}
+
+}  // namespace
+
+// `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
+void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const {
+  const geometry::Box& box = scene_->box;
+  const bool graded = scene_->features.graded && touching > 0.0;
+  Search s{x_[0].data(),
+           x_[1].data(),
+           x_[2].data(),
+           radius_.data(),
+           cutoff + scene_->skin,
+           box.periodic[0] ? box.size[0] : 0.0,
+           box.dimension == 3 && box.periodic[1] ? box.size[1] : 0.0};
+  if (touching > 0.0 && !graded) s.reach += 2.0 * scene_->sizes.largest();
+  const Find find_in = choose(graded, scene_->features.periodic, box.dimension == 3);
+
+  std::size_t size = 0;
+  LocalIndex window = 1;
+  const auto levels = static_cast<std::size_t>(cells_.levels);
+  for (int c = 0; c < columns_.own(); ++c) {
+    const auto column = static_cast<std::size_t>(c) * levels;
+    for (std::size_t k = 0; k < levels; ++k) {
+      const std::size_t low = k > 0 ? k - 1 : 0;
+      const std::size_t high = std::min(k + 2, levels);
+      const LocalIndex own_end = cells_.start[column + high];
+      std::size_t candidates = static_cast<std::size_t>(own_end - cells_.start[column + k]);
+      for (const int other : columns_.forward(c)) {
+        const auto at = static_cast<std::size_t>(other) * levels;
+        candidates += static_cast<std::size_t>(cells_.start[at + high] - cells_.start[at + low]);
+      }
+      for (LocalIndex i = cells_.start[column + k]; i < cells_.start[column + k + 1]; ++i) {
+        if (list.second.size() < size + candidates) list.second.resize((size + candidates) * 9 / 8 + 1024);
+        LocalIndex* const begin = list.second.data() + size;
+        LocalIndex* out = find_in(s, i, i + 1, own_end, begin);
+        for (const int other : columns_.forward(c)) {
+          const auto at = static_cast<std::size_t>(other) * levels;
+          out = find_in(s, i, cells_.start[at + low], cells_.start[at + high], out);
+        }
+        const auto found = static_cast<std::size_t>(out - begin);
+        if (list.first.size() < list.second.size()) list.first.resize(list.second.size());
+        std::fill_n(list.first.data() + size, found, i);
+        for (const LocalIndex* j = begin; j < out; ++j) {
+          if (*j < store.owned()) window = std::max(window, *j - i + 1);
+        }
+        size += found;
+      }
+    }
+  }
+  list.first.resize(size);
+  list.second.resize(size);
+  list.window = window;
+}
+
+void Neighborhood::build_walls(const particles::Store& store) {
+  const geometry::Box& box = scene_->box;
+  walls_.particle.clear();
+  walls_.wall.clear();
+  const auto add = [this](LocalIndex i, Wall wall) {
+    walls_.particle.push_back(i);
+    walls_.wall.push_back(wall);
+  };
+  constexpr std::array<Wall, 2> low{Wall::x_low, Wall::y_low};
+  constexpr std::array<Wall, 2> high{Wall::x_high, Wall::y_high};
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const Vec3 x = store.position(i);
+    const double range = store.radius(i) + scene_->skin;
+    if (x[static_cast<std::size_t>(box.vertical())] < range) add(i, Wall::floor);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
+      if (box.periodic[a]) continue;
+      if (x[a] < range) add(i, low[a]);
+      if (box.size[a] - x[a] < range) add(i, high[a]);
+    }
+  }
+}
+
+}  // namespace packmpi::neighbor

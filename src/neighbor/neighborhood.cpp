@@ -1,0 +1,233 @@
+#include "neighbor/neighborhood.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace packmpi::neighbor {
+namespace {
+
+// True displacements are worth looking at only if lists can then live on for a while.
+constexpr double live_on = 0.8;
+// No particle of a sound run is this many container heights up.
+constexpr double highest = 1000.0;
+
+}  // namespace
+
+Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership)
+    : comm_(&comm),
+      scene_(&scene),
+      ownership_(&ownership),
+      columns_(ownership, comm.rank()),
+      halo_(comm, scene.features.layout()) {}
+
+void Neighborhood::ownership_changed() { columns_ = LocalColumns(*ownership_, comm_->rank()); }
+
+void Neighborhood::rebuild(particles::Store& store) {
+  store.set_ghosts(0);
+  check_inside(store);
+  migrate(store);
+  sort_owned(store);
+  halo_.plan(store, choose_sends(store));
+  sort_ghosts(store);
+  remember_positions(store);
+  build_pairs(store, 1.0, 0.0, pairs_);
+  if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
+  build_walls(store);
+  drift_ = 0.0;
+  ++rebuilds_;
+}
+
+bool Neighborhood::follow(particles::Store& store, double max_speed, double time_step, bool failed) {
+  drift_ += max_speed * time_step;
+  std::array<double, 2> shared{failed || !std::isfinite(drift_) ? 0.0 : drift_,
+                               failed || !std::isfinite(drift_) ? 1.0 : 0.0};
+  comm_->max(shared);
+  if (shared[1] > 0.0) return true;
+  const double limit = 0.5 * scene_->skin;
+  if (shared[0] <= limit) {
+    halo_.refresh(store);
+    return false;
+  }
+  drift_ = largest_displacement(store);
+  if (comm_->max(drift_) <= live_on * limit) {
+    halo_.refresh(store);
+  } else {
+    rebuild(store);
+  }
+  return false;
+}
+
+void Neighborhood::check_inside(const particles::Store& store) const {
+  std::optional<std::string> complaint;
+  const geometry::Box& box = scene_->box;
+  for (LocalIndex i = 0; i < store.owned() && !complaint; ++i) {
+    const Vec3 x = store.position(i);
+    const double r = store.radius(i);
+    const double z = x[static_cast<std::size_t>(box.vertical())];
+    bool inside = z > -r && z < highest * (box.height() + scene_->in.layers.thickness);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
+      inside = inside && x[a] > -r && x[a] < box.size[a] + r;
+    }
+    if (inside) continue;  // false for NaN too
+    const Vec3 v = store.velocity(i);
+    complaint = fmt::format(
+        "particle {} left the container: position ({:g}, {:g}, {:g}) m, velocity ({:g}, {:g}, {:g}) m/s, "
+        "radius {:g} m, on rank {}; use a smaller dynamics.time_step or softer particles",
+        store.ids()[static_cast<std::size_t>(i)], x[0], x[1], x[2], v[0], v[1], v[2], r, comm_->rank());
+  }
+  comm::agree(*comm_, ExitCode::numerical_failure, complaint);
+}
+
+void Neighborhood::migrate(particles::Store& store) const {
+  if (comm_->size() == 1) return;
+  const std::size_t record = store.layout().record_bytes();
+  std::vector<comm::Parcel> outgoing;
+  std::vector<LocalIndex> staying;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const Rank owner = ownership_->owner(ownership_->grid().column(store.position(i)));
+    if (owner == comm_->rank()) {
+      staying.push_back(i);
+      continue;
+    }
+    auto parcel = std::ranges::find(outgoing, owner, &comm::Parcel::rank);
+    if (parcel == outgoing.end()) parcel = outgoing.insert(outgoing.end(), comm::Parcel{owner, {}});
+    const auto* id = reinterpret_cast<const std::byte*>(&store.ids()[static_cast<std::size_t>(i)]);
+    const auto* body = reinterpret_cast<const std::byte*>(store.record(i));
+    parcel->bytes.insert(parcel->bytes.end(), id, id + sizeof(GlobalId));
+    parcel->bytes.insert(parcel->bytes.end(), body, body + record);
+  }
+  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing));
+  if (staying.size() < static_cast<std::size_t>(store.owned())) store.reorder(staying);
+  std::vector<double> body(static_cast<std::size_t>(store.layout().stride));
+  for (const comm::Parcel& parcel : incoming) {
+    for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(GlobalId) + record) {
+      GlobalId id = 0;
+      std::memcpy(&id, parcel.bytes.data() + at, sizeof id);
+      std::memcpy(body.data(), parcel.bytes.data() + at + sizeof id, record);
+      store.add_record(id, body.data());
+    }
+  }
+}
+
+void Neighborhood::sort_owned(particles::Store& store) {
+  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  double top = 0.0;
+  for (LocalIndex i = 0; i < store.owned(); ++i) top = std::max(top, store.position(i)[vertical]);
+  cells_.inverse_height = 1.0 / scene_->column_width();
+  cells_.levels = static_cast<int>(comm_->max(top) * cells_.inverse_height) + 1;
+  const auto levels = static_cast<std::size_t>(cells_.levels);
+  cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
+
+  const auto owned = static_cast<std::size_t>(store.owned());
+  std::vector<LocalIndex> cell(owned);
+  for (std::size_t i = 0; i < owned; ++i) {
+    const Vec3 x = store.position(static_cast<LocalIndex>(i));
+    const int column = columns_.local(ownership_->grid().column(x));
+    cell[i] = static_cast<LocalIndex>(static_cast<std::size_t>(column) * levels) + cells_.level(x[vertical]);
+    ++cells_.start[static_cast<std::size_t>(cell[i]) + 1];
+  }
+  std::partial_sum(cells_.start.begin(), cells_.start.end(), cells_.start.begin());
+  std::vector<LocalIndex> next(cells_.start.begin(), cells_.start.end() - 1);
+  std::vector<LocalIndex> order(owned);
+  for (std::size_t i = 0; i < owned; ++i) {
+    order[static_cast<std::size_t>(next[static_cast<std::size_t>(cell[i])]++)] = static_cast<LocalIndex>(i);
+  }
+  store.reorder(order);
+}
+
+std::vector<Sends> Neighborhood::choose_sends(const particles::Store& store) const {
+  std::vector<Sends> sends;
+  for (const Rank rank : ownership_->neighbors()) sends.push_back({rank, {}});
+  const double range = scene_->column_width();
+  const auto levels = static_cast<std::size_t>(cells_.levels);
+  for (const LocalColumns::Border& border : columns_.borders()) {
+    std::vector<LocalIndex>& slots = std::ranges::find(sends, border.rank, &Sends::rank)->slots;
+    const auto c = static_cast<std::size_t>(border.local);
+    for (LocalIndex i = cells_.start[c * levels]; i < cells_.start[(c + 1) * levels]; ++i) {
+      const Vec3 x = store.position(i);
+      const bool wanted = std::ranges::any_of(
+          border.columns, [&](geometry::ColumnIndex column) { return ownership_->grid().distance(x, column) < range; });
+      if (wanted) slots.push_back(i);
+    }
+  }
+  return sends;
+}
+
+void Neighborhood::sort_ghosts(particles::Store& store) {
+  const auto ghosts = static_cast<std::size_t>(store.ghosts());
+  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  const auto levels = static_cast<std::size_t>(cells_.levels);
+  const auto first_cell = static_cast<std::size_t>(columns_.own()) * levels;
+  std::vector<std::size_t> cell(ghosts);
+  std::vector<LocalIndex> count(cells_.start.size() - first_cell, 0);
+  for (std::size_t k = 0; k < ghosts; ++k) {
+    const Vec3 x = store.position(store.owned() + static_cast<LocalIndex>(k));
+    const int column = columns_.local(ownership_->grid().column(x));
+    cell[k] =
+        static_cast<std::size_t>(column) * levels + static_cast<std::size_t>(cells_.level(x[vertical])) - first_cell;
+    ++count[cell[k] + 1];
+  }
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  for (std::size_t c = 0; c < count.size(); ++c) cells_.start[first_cell + c] = store.owned() + count[c];
+  std::vector<LocalIndex> place(ghosts);
+  for (std::size_t k = 0; k < ghosts; ++k) place[k] = count[cell[k]]++;
+  halo_.order_ghosts(store, place);
+}
+
+void Neighborhood::remember_positions(const particles::Store& store) {
+  const auto total = static_cast<std::size_t>(store.total());
+  for (int a = 0; a < scene_->box.dimension; ++a) {
+    std::vector<double>& x = x_[static_cast<std::size_t>(a)];
+    x.resize(total);
+    for (std::size_t i = 0; i < total; ++i) x[i] = store.record(static_cast<LocalIndex>(i))[a];
+  }
+  if (!scene_->features.graded) return;
+  radius_.resize(total);
+  for (std::size_t i = 0; i < total; ++i) radius_[i] = store.radius(static_cast<LocalIndex>(i));
+}
+
+double Neighborhood::largest_displacement(const particles::Store& store) const {
+  const geometry::Box& box = scene_->box;
+  double largest = 0.0;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const double* record = store.record(i);
+    double squared = 0.0;
+    for (int a = 0; a < box.dimension; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      double d = record[a] - x_[axis][static_cast<std::size_t>(i)];
+      if (a < box.lateral_axes() && box.periodic[axis]) d = geometry::shortest(d, box.size[axis]);
+      squared += d * d;
+    }
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
+}
+
+std::vector<std::int64_t> Neighborhood::column_counts(const particles::Store& store) const {
+  std::vector<std::int64_t> by_local(static_cast<std::size_t>(columns_.own()), 0);
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const int column = columns_.local(ownership_->grid().column(store.position(i)));
+    if (column >= 0 && column < columns_.own()) ++by_local[static_cast<std::size_t>(column)];
+  }
+  std::vector<std::int64_t> counts;
+  for (const geometry::ColumnIndex column : ownership_->columns()) {
+    counts.push_back(by_local[static_cast<std::size_t>(columns_.local(column))]);
+  }
+  return counts;
+}
+
+std::size_t Neighborhood::bytes() const noexcept {
+  std::size_t total =
+      halo_.bytes() + cells_.start.capacity() * sizeof(LocalIndex) + radius_.capacity() * sizeof(double);
+  for (const std::vector<double>& x : x_) total += x.capacity() * sizeof(double);
+  for (const PairList* list : {&pairs_, &near_pairs_}) {
+    total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);
+  }
+  return total + walls_.particle.capacity() * (sizeof(LocalIndex) + sizeof(Wall));
+}
+
+}  // namespace packmpi::neighbor

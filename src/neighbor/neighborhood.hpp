@@ -1,0 +1,70 @@
+/// Who is near whom: migration, memory order, ghosts and Verlet lists of one rank, and when they must be made anew.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "neighbor/cells.hpp"
+#include "neighbor/halo.hpp"
+#include "neighbor/lists.hpp"
+#include "particles/store.hpp"
+#include "scene/ownership.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::neighbor {
+
+/// Lists and ghosts of the particles of a store. No result of a run depends on when or how they are built.
+class Neighborhood {
+ public:
+  Neighborhood(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership);
+
+  /// Collective. Call after the ownership table changed; then rebuild().
+  void ownership_changed();
+
+  /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts, makes the lists.
+  /// Throws Error(numerical_failure) on all ranks if a particle is outside the container or not finite, naming it.
+  /// Cost: O(owned + ghosts), about as much as three steps.
+  void rebuild(particles::Store& store);
+
+  /// Collective. Tells that all particles moved for `time_step` at speeds of at most `max_speed` (this rank's own
+  /// bound), and that `failed` is true here; brings lists and ghosts up to date for the next step: rebuilds, or
+  /// refreshes the ghosts. Returns true on all ranks if any rank failed (and then does nothing else).
+  bool follow(particles::Store& store, double max_speed, double time_step, bool failed);
+
+  [[nodiscard]] const PairList& pairs() const noexcept { return pairs_; }
+  [[nodiscard]] const PairList& near_pairs() const noexcept { return near_pairs_; }  ///< near field; empty when off
+  [[nodiscard]] const WallList& walls() const noexcept { return walls_; }
+  [[nodiscard]] const Halo& halo() const noexcept { return halo_; }
+  [[nodiscard]] std::int64_t rebuilds() const noexcept { return rebuilds_; }
+  [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
+
+  /// Particles in each own column, in the order of Ownership::columns(); the weights of the balance. Local.
+  [[nodiscard]] std::vector<std::int64_t> column_counts(const particles::Store& store) const;
+
+ private:
+  void check_inside(const particles::Store& store) const;  // collective
+  void migrate(particles::Store& store) const;             // collective
+  void sort_owned(particles::Store& store);
+  [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
+  void sort_ghosts(particles::Store& store);
+  void remember_positions(const particles::Store& store);
+  void build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const;
+  void build_walls(const particles::Store& store);
+  [[nodiscard]] double largest_displacement(const particles::Store& store) const;  // this rank's [m]
+
+  const comm::Comm* comm_;
+  const scene::Scene* scene_;
+  const scene::Ownership* ownership_;
+  LocalColumns columns_;
+  Cells cells_;
+  Halo halo_;
+  PairList pairs_, near_pairs_;
+  WallList walls_;
+  // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.
+  std::array<std::vector<double>, 3> x_;
+  std::vector<double> radius_;
+  double drift_ = 0.0;  // bound of any displacement since the rebuild, this rank [m]
+  std::int64_t rebuilds_ = 0;
+};
+
+}  // namespace packmpi::neighbor
