@@ -1,0 +1,98 @@
+#include "run/journal.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "observe/measure.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr double terminal_interval = 0.2;  // [s] between rewrites of the progress line
+constexpr double plain_interval = 20.0;    // [s] between plain lines
+// A settled pile has about this solid fraction; only for the estimate of the time left before a layer has shown it.
+double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
+
+}  // namespace
+
+Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet)
+    : pile_(pile), steps_(pile.comm, steps_path), terminal_(isatty(1) != 0), quiet_(quiet) {}
+
+void Journal::layer_inserted(const output::LayerRow& row) {
+  log::debug(fmt::format("inserted {} particles in {} darts, solid fraction {:.4f} of the region from {:.6g} m up",
+                         row.inserted, row.attempts, row.fraction_got, row.region_bottom));
+}
+
+void Journal::moment(double share) {
+  const observe::Motion motion = observe::motion(pile_.comm, pile_.store, pile_.scene);
+  const double top = observe::top(pile_.comm, pile_.store, pile_.scene);
+  const double force = pile_.comm.max(pile_.stepper.last().max_force);
+  steps_.append({.layer = static_cast<std::int32_t>(pile_.first_ids.size()) - 1,
+                 .step = pile_.steps,
+                 .time = static_cast<double>(pile_.steps) * pile_.scene.time_step,
+                 .particles = pile_.count,
+                 .kinetic_energy = motion.kinetic_energy,
+                 .max_speed = motion.max_speed,
+                 .top = top,
+                 .mean_height = motion.mean_height,
+                 .max_force = force,
+                 .rebuilds = pile_.neighborhood.rebuilds()});
+  if (pile_.comm.rank() == 0 && !quiet_) progress(share, motion.kinetic_energy, top);
+}
+
+// Particle-steps still to do, from the layers still to come, at the rate so far.
+double Journal::seconds_left(double share) const {
+  const input::Input& in = pile_.scene.in;
+  const double asked = pile_.scene.box.height();
+  const double per_layer = layers_done_ > 1
+                               ? height_ / layers_done_
+                               : in.layers.fraction * in.layers.thickness / usual_fraction(pile_.scene.box.dimension);
+  const double layers = std::max(std::ceil(asked / per_layer), layers_done_ + 1.0);
+  const double inserted = static_cast<double>(pile_.count) / (layers_done_ + 1.0);
+  const double steps = in.layers.duration / pile_.scene.time_step;
+  const double now = layers_done_ + share;  // layers settled so far
+  const double work = steps * inserted * 0.5 * (layers * (layers + 1.0) - layers_done_ * (layers_done_ + 1.0)) -
+                      steps * inserted * (layers_done_ + 1.0) * share;
+  const double finished = steps * inserted * (0.5 * layers_done_ * (layers_done_ + 1.0) + (layers_done_ + 1.0) * share);
+  return now > 0.0 ? watch_.seconds() * work / finished : -1.0;
+}
+
+void Journal::progress(double share, double kinetic_energy, double top) {
+  const double now = watch_.seconds();
+  if (now - last_shown_ < (terminal_ ? terminal_interval : plain_interval)) return;
+  last_shown_ = now;
+  const double steps =
+      static_cast<double>(pile_.stepper.particle_steps()) * pile_.comm.size();  // about: all ranks alike
+  const std::string line = fmt::format(
+      "layer {:3d} {:3.0f} %  {} particles  top {:.4g} of {:.4g} m  KE {:.2e} J  {:.1f}e6 particle-steps/s  {} left",
+      pile_.first_ids.size(), 100.0 * share, pile_.count, top, pile_.scene.box.height(), kinetic_energy,
+      steps / now * 1e-6, text::duration(seconds_left(share)));
+  if (terminal_) {
+    fmt::print("\r{}\033[K", line);
+  } else {
+    fmt::print("{}\n", line);
+  }
+  std::fflush(stdout);
+}
+
+void Journal::layer_settled(const output::LayerRow& row) {
+  ++layers_done_;
+  height_ = row.height;
+  const std::string line = fmt::format(
+      "layer {:3d} settled: {} particles, height {:.4f} m, top {:.4f} m, KE/(m g d) {:.1e}, contacts {:.2f}, overlap "
+      "at most {:.1e} r",
+      layers_done_, row.total, row.height, row.top, row.kinetic_per_mgd, row.coordination, row.max_overlap);
+  if (pile_.comm.rank() == 0 && terminal_ && !quiet_) fmt::print("\r\033[K");
+  std::fflush(stdout);
+  log::info(line);
+}
+
+void Journal::finish() { steps_.close(); }
+
+}  // namespace packmpi::run

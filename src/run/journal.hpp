@@ -1,0 +1,41 @@
+/// What a run tells while it goes: progress, NAME.log, NAME.steps.csv.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "base/timer.hpp"
+#include "output/record.hpp"
+#include "output/report.hpp"
+#include "run/pile.hpp"
+
+namespace packmpi::run {
+
+/// Progress line with an estimate of the time left (a terminal: one line, rewritten; else a line now and then).
+class Journal {
+ public:
+  /// Collective. Opens the step log at `steps_path`.
+  Journal(const Pile& pile, const std::string& steps_path, bool quiet);
+
+  void layer_inserted(const output::LayerRow& row);  ///< local
+  /// Collective. A row of the step log, and progress; `share` is the part of the layer's duration done, 0 .. 1.
+  void moment(double share);
+  void layer_settled(const output::LayerRow& row);  ///< local
+  /// Collective. Closes the files.
+  void finish();
+
+ private:
+  void progress(double share, double kinetic_energy, double top);
+  [[nodiscard]] double seconds_left(double share) const;
+
+  const Pile& pile_;
+  output::StepLog steps_;
+  Stopwatch watch_;
+  bool terminal_ = false;
+  bool quiet_ = false;
+  double last_shown_ = 0.0;
+  double height_ = 0.0;  // [m] after the last settled layer
+  int layers_done_ = 0;
+  std::int64_t done_ = 0;  // particle-steps of settled layers
+};
+
+}  // namespace packmpi::run

@@ -1,0 +1,165 @@
+#include "run/make_pack.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/log.hpp"
+#include "geometry/volume.hpp"
+#include "observe/measure.hpp"
+#include "output/pack.hpp"
+#include "output/report.hpp"
+#include "rsa/insert.hpp"
+#include "run/files.hpp"
+#include "run/journal.hpp"
+#include "run/pile.hpp"
+#include "run/record.hpp"
+
+namespace packmpi::run {
+namespace {
+
+// Share of a layer's duration over which its creep is measured.
+constexpr double creep_share = 0.1;
+
+// Every layer adds phi_0 h_0 of solid and no pile is denser than solid: more layers than this never come to H_d.
+std::int64_t most_layers(const scene::Scene& scene) {
+  const input::Layers& layers = scene.in.layers;
+  if (layers.maximum > 0) return layers.maximum;
+  return static_cast<std::int64_t>(std::ceil(scene.box.height() / (layers.fraction * layers.thickness))) + 2;
+}
+
+void insert_layer(Pile& pile, output::LayerRow& row) {
+  const scene::Scene& scene = pile.scene;
+  pile.store.set_ghosts(0);
+  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
+                                .bottom = observe::top(pile.comm, pile.store, scene),
+                                .thickness = scene.in.layers.thickness,
+                                .first_id = pile.count};
+  const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store);
+  pile.first_ids.push_back(pile.count);
+  pile.count += got.inserted;
+  row.inserted = got.inserted;
+  row.attempts = got.darts;
+  row.total = pile.count;
+  row.fraction_asked = scene.in.layers.fraction;
+  row.fraction_got = got.solid_volume / (scene.box.floor_area() * region.thickness);
+  row.region_bottom = region.bottom;
+}
+
+void balance(Pile& pile) {
+  if (pile.ownership.rebalance(pile.neighborhood.column_counts(pile.store))) {
+    pile.neighborhood.ownership_changed();
+    log::debug("columns were shared out anew");
+  }
+  pile.neighborhood.rebuild(pile.store);
+}
+
+// The layer's duration in chunks of the logging interval. Returns the change of phi_bulk a second at the end [1/s].
+double settle_layer(Pile& pile, Journal& journal, output::LayerRow& row) {
+  const scene::Scene& scene = pile.scene;
+  const auto steps = static_cast<std::int64_t>(std::llround(scene.in.layers.duration / scene.time_step));
+  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.in.layers.duration;
+  const auto chunk = std::max<std::int64_t>(1, std::llround(interval / scene.time_step));
+  const std::int64_t creep_from =
+      steps - std::max<std::int64_t>(1, std::llround(creep_share * static_cast<double>(steps)));
+  double before = 0.0;
+  for (std::int64_t done = 0; done < steps;) {
+    std::int64_t next = std::min(steps, (done / chunk + 1) * chunk);
+    if (done < creep_from) next = std::min(next, creep_from);
+    pile.stepper.advance(pile.store, pile.neighborhood, next - done);
+    pile.steps += next - done;
+    done = next;
+    if (done == creep_from) before = observe::density(pile.comm, pile.store, scene).phi_bulk;
+    if (done % chunk == 0 || done == steps) journal.moment(static_cast<double>(done) / static_cast<double>(steps));
+  }
+  row.steps = steps;
+  row.duration = static_cast<double>(steps) * scene.time_step;
+  row.stop_reason = "duration";
+  const double after = observe::density(pile.comm, pile.store, scene).phi_bulk;
+  return (after - before) / (static_cast<double>(steps - creep_from) * scene.time_step);
+}
+
+double height_of(const Pile& pile) {
+  return pile.scene.in.layers.height == input::HeightRule::highest
+             ? observe::top(pile.comm, pile.store, pile.scene)
+             : observe::surface_height(pile.comm, pile.store, pile.scene);
+}
+
+void measure_layer(const Pile& pile, output::LayerRow& row) {
+  const scene::Scene& scene = pile.scene;
+  const observe::Contacts contacts =
+      observe::contacts(pile.comm, pile.store, scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
+  const observe::Motion motion = observe::motion(pile.comm, pile.store, scene);
+  row.height = height_of(pile);
+  row.top = observe::top(pile.comm, pile.store, scene);
+  row.max_overlap = contacts.max_overlap;
+  row.coordination = contacts.coordination;
+  const double mgd = motion.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
+  row.kinetic_per_mgd = mgd > 0.0 ? motion.kinetic_energy / mgd : 0.0;
+}
+
+// The loop of Algorithm 1. Bounded.
+void pile_up(Pile& pile, Journal& journal, output::RunRecord& record) {
+  const std::int64_t most = most_layers(pile.scene);
+  while (record.height < record.height_asked && static_cast<std::int64_t>(record.layers.size()) < most) {
+    output::LayerRow row;
+    insert_layer(pile, row);
+    balance(pile);
+    journal.layer_inserted(row);
+    record.creep = settle_layer(pile, journal, row);
+    measure_layer(pile, row);
+    journal.layer_settled(row);
+    record.height = row.height;
+    record.layers.push_back(row);
+  }
+  record.reached = record.height >= record.height_asked;
+  record.stop_reason = record.reached ? "height" : "layers.maximum";
+}
+
+void write_outputs(const Pile& pile, const Files& files, const output::RunRecord& record) {
+  const observe::Contacts contacts =
+      observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
+  std::vector<output::ContactRow> rows;
+  if (pile.scene.in.output.contacts) {
+    for (const observe::ContactForce& c : observe::contact_forces(pile.store, pile.scene, pile.neighborhood.pairs())) {
+      rows.push_back({c.first, c.second, c.overlap, c.force});
+    }
+  }
+  const std::vector<std::int32_t> layers = pile.layers();
+  const output::PackParts parts{.store = &pile.store,
+                                .layer = layers,
+                                .contacts = contacts.of_particle,
+                                .contact_rows = pile.scene.in.output.contacts ? &rows : nullptr};
+  output::write_pack(pile.comm, files.pack, parts, record);
+  output::write_text(pile.comm, files.summary, output::to_json(record));
+}
+
+}  // namespace
+
+output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const Stopwatch watch;
+  const Files files = claim_files(comm, scene, options);
+  log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
+                        comm.size() == 1 ? "" : "s", scene.in.seed));
+  Pile pile(comm, scene);
+  output::RunRecord record = asked(comm, scene);
+  Journal journal(pile, files.steps, options.verbosity == log::Verbosity::quiet);
+  pile_up(pile, journal, record);
+  journal.finish();
+  got(pile, record);
+  record.wall_seconds = comm.max(watch.seconds());
+  record.particle_steps_per_second = static_cast<double>(record.particle_steps) / record.wall_seconds;
+  write_outputs(pile, files, record);
+  return record;
+}
+
+bool targets_met(const output::RunRecord& record) {
+  constexpr double deepest = 0.5;  // of a radius: no sound pack has such overlaps
+  const output::Audit& audit = record.audit;
+  return record.reached && audit.found == audit.expected && audit.non_finite == 0 && audit.outside == 0 &&
+         audit.worst_overlap < deepest && audit.worst_wall_penetration < deepest;
+}
+
+}  // namespace packmpi::run

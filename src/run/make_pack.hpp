@@ -1,0 +1,19 @@
+/// CC16 Algorithm 1: layer after layer until the asked height is reached.
+#pragma once
+#include "comm/comm.hpp"
+#include "output/record.hpp"
+#include "run/options.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::run {
+
+/// Collective. Makes the pack of a scene and writes NAME.hdf, NAME.json, NAME.log and NAME.steps.csv into
+/// options.folder. Throws Error on all ranks: bad_input (existing outputs without --force; RSA cannot reach phi_0),
+/// numerical_failure, io_failure. A pack that misses a target is written all the same: see RunRecord::reached and the
+/// audit.
+[[nodiscard]] output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
+
+/// Whether the record is what was asked: height reached, nothing lost, nothing outside, no deep overlap.
+[[nodiscard]] bool targets_met(const output::RunRecord& record);
+
+}  // namespace packmpi::run

@@ -1,0 +1,35 @@
+/// The particles of a run and everything that follows them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "dynamics/stepper.hpp"
+#include "neighbor/neighborhood.hpp"
+#include "particles/store.hpp"
+#include "scene/ownership.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::run {
+
+/// State of a run on this rank. The scene and the communicator must outlive it.
+struct Pile {
+  Pile(const comm::Comm& world, const scene::Scene& what);
+
+  const comm::Comm& comm;
+  const scene::Scene& scene;
+  scene::Ownership ownership;
+  particles::Store store;
+  neighbor::Neighborhood neighborhood;
+  dynamics::Stepper stepper;
+  std::vector<GlobalId> first_ids;  ///< of each layer
+  GlobalId count = 0;               ///< particles on all ranks
+  std::int64_t steps = 0;
+
+  /// Layer of each owned particle, in slot order.
+  [[nodiscard]] std::vector<std::int32_t> layers() const;
+  /// Bytes a particle on the rank where they are most. Collective.
+  [[nodiscard]] double bytes_per_particle() const;
+};
+
+}  // namespace packmpi::run

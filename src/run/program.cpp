@@ -1,0 +1,86 @@
+#include "run/program.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "comm/session.hpp"
+#include "output/report.hpp"
+#include "run/files.hpp"
+#include "run/make_pack.hpp"
+#include "scene/ownership.hpp"
+
+namespace packmpi::run {
+namespace {
+
+void warn_of_step(const scene::Scene& scene) {
+  const double safe = scene::safe_time_step(scene.in, scene.sizes);
+  if (scene.time_step > safe) {
+    log::warn(fmt::format(
+        "time step {:g} s is beyond eq. (23) for the smallest particles ({:.3g} s), though not for the mean",
+        scene.time_step, safe));
+  }
+}
+
+// `packmpi check`: the scene as it will be used, and what follows from it.
+int check(const comm::Comm& comm, const scene::Scene& scene) {
+  const scene::Ownership ownership(comm, geometry::ColumnGrid(scene.box, scene.column_width()),
+                                   scene.in.parallel.decomposition);
+  if (comm.rank() == 0) {
+    const auto [nx, ny] = ownership.grid().counts();
+    fmt::print(
+        "{}\n# {} is sound.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
+        "# lateral grid {} x {} columns: at most {} ranks\n# about {:.0f} particles\n",
+        scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
+        std::int64_t{nx} * ny, expected_particles(scene));
+  }
+  return 0;
+}
+
+int make(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const output::RunRecord record = make_pack(comm, scene, options);
+  const bool met = targets_met(record);
+  if (comm.rank() == 0) {
+    fmt::print("{}\n", output::to_table(record));
+    std::fflush(stdout);
+    log::info(fmt::format("{} in {}", met ? "done" : "finished, but a target was missed",
+                          text::duration(record.wall_seconds)));
+  }
+  return static_cast<int>(met ? ExitCode::done : ExitCode::target_missed);
+}
+
+int act(const comm::Comm& comm, const Options& options) {
+  log::start(comm.rank(), std::nullopt, options.verbosity);
+  const input::Input in = input::read(comm, options.scene, options.overrides);
+  comm::petsc_options(in.petsc.options);
+  const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
+  warn_of_step(scene);
+  return options.command == Command::check ? check(comm, scene) : make(comm, scene, options);
+}
+
+}  // namespace
+
+int program(MPI_Comm world, int argc, const char* const* argv) {
+  const comm::Comm comm(world);
+  const auto parsed = parse_command_line(argc, argv);
+  if (const Reply* reply = std::get_if<Reply>(&parsed)) {
+    if (comm.rank() == 0) fmt::print(reply->code == 0 ? stdout : stderr, "{}", reply->text);
+    return reply->code;
+  }
+  int code = 0;
+  try {
+    code = act(comm, std::get<Options>(parsed));
+  } catch (const Error& error) {  // thrown on every rank alike
+    if (comm.rank() == 0) log::error(error.what());
+    code = static_cast<int>(error.code());
+  } catch (const std::exception& error) {  // one rank alone: the others may wait for it
+    comm::abort_all(static_cast<int>(ExitCode::numerical_failure),
+                    fmt::format("rank {}: {}", comm.rank(), error.what()));
+  }
+  log::finish();
+  return code;
+}
+
+}  // namespace packmpi::run
