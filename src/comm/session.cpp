@@ -22,6 +22,18 @@ std::string reason(PetscErrorCode failure) {
   return text != nullptr ? text : "PETSc error " + std::to_string(failure);
 }
 
+/// PETSc passes over words that are not options; and a file of options is read by rank 0 alone, whose failure would
+/// leave the others waiting, and is not kept with the run.
+void refuse_misunderstandings(const std::string& words) {
+  const auto first = words.find_first_not_of(' ');
+  if (first != std::string::npos && words[first] != '-') {
+    throw Error(ExitCode::bad_input, "PETSc options start with a '-', unlike \"" + words + "\"");
+  }
+  if (words.find("-options_file") != std::string::npos) {
+    throw Error(ExitCode::bad_input, "PETSc options must be written out, without -options_file: \"" + words + "\"");
+  }
+}
+
 }  // namespace
 
 Session::Session(int& argc, char**& argv) {
@@ -48,6 +60,7 @@ Session::~Session() {
 }
 
 void petsc_options(const std::string& words) {
+  refuse_misunderstandings(words);
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // no traceback on stderr: the words below are for the user
   const PetscErrorCode failure = PetscOptionsInsertString(nullptr, words.c_str());
   PetscPopErrorHandler();

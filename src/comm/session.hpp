@@ -20,7 +20,7 @@ class Session {
 };
 
 /// Adds options in PETSc's own words, for example "-log_view :log.txt". Needs a Session. The same words on every rank.
-/// Errors: Error(bad_input) with PETSc's reason. Local.
+/// Errors: Error(bad_input) when they do not start with '-', for -options_file, and with PETSc's reason. Local.
 void petsc_options(const std::string& words);
 
 /// Ends every rank at once with `code`, for the case where the ranks cannot agree any more.
