@@ -11,24 +11,34 @@
 namespace packmpi::input {
 namespace {
 
-constexpr std::size_t longest_file = 1U << 20U;  // bytes; a scene is a page of text
-constexpr std::size_t longest_line = 4096;       // bounds the depth of dotted keys, on which toml++ recurses
+constexpr int most_dots = 16;  // in one key; toml++ recurses on them, and ours have two
 
 /// Refuses what toml++ should not be asked to read.
 void check_size(const std::string& text, const std::string& file) {
-  if (text.empty())
-    throw Error(ExitCode::bad_input, file + ":1: the file is empty; see doc/input.md for a first scene");
-  if (text.size() > longest_file) {
-    throw Error(ExitCode::bad_input, file + ":1: more than 1 MiB long; is this a scene file?");
-  }
-  std::size_t line = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end - begin > longest_line) {
-      throw Error(ExitCode::bad_input,
-                  fmt::format("{}:{}: line longer than {} bytes; break it", file, line, longest_line));
+  const auto refuse = [&](std::int64_t line, std::string_view words) {
+    throw Error(ExitCode::bad_input, fmt::format("{}:{}: {}", file, line, words));
+  };
+  if (text.empty()) refuse(1, "the file is empty; see doc/input.md for a first scene");
+  if (text.size() > Document::longest_file) refuse(1, "the file is longer than 1 MiB; is it a scene?");
+  int dots = 0;
+  char before = '\n';  // the last character that is not a blank
+  bool blank = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == ' ' || c == '\t') {
+      blank = true;
+      continue;
     }
-    begin = end + 1;
+    const bool new_word = (blank && before != '.') || std::string_view("=,[{#\n").find(c) != std::string_view::npos;
+    if (c == '.') {
+      dots = before == '.' ? 0 : dots + 1;
+    } else if (new_word) {
+      dots = 0;
+    }
+    if (dots > most_dots)
+      refuse(1 + std::count(text.data(), text.data() + i, '\n'), "a key of too many parts; no key has more than three");
+    before = c;
+    blank = false;
   }
 }
 
@@ -92,7 +102,8 @@ Document::Document(const std::string& text, const std::string& file) {
 }
 
 void Document::set(const std::string& assignment) {
-  const std::string place = "--set " + assignment;
+  const bool prints = std::ranges::none_of(assignment, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  const std::string place = "--set " + (prints ? assignment : toml_string(assignment));
   const std::size_t equals = assignment.find('=');
   std::string_view path = trimmed(std::string_view(assignment).substr(0, equals));
   if (equals == std::string::npos || path.empty() || path.ends_with('.')) {

@@ -1,5 +1,6 @@
 /// A scene file as a tree of values that know where they were written. The only door to toml++.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@ struct Entry {
 /// The tree and the questions asked of it.
 class Document {
  public:
+  static constexpr std::size_t longest_file = std::size_t{1} << 20;  ///< bytes; a scene is a page of text
+
   /// Parses `text` as the file `file`. Throws Error(bad_input), one line, on anything that is not TOML.
   Document(const std::string& text, const std::string& file);
 

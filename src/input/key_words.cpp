@@ -41,7 +41,6 @@ bool Range::contains(double value) const noexcept {
 std::string Range::words() const {
   const std::string from = std::isfinite(low) ? fmt::format("{} {}", low_open ? ">" : ">=", bound(low)) : "";
   const std::string to = std::isfinite(high) ? fmt::format("{} {}", high_open ? "<" : "<=", bound(high)) : "";
-  if (low == high) return "= " + bound(low);
   return from + (from.empty() || to.empty() ? "" : " and ") + to;
 }
 
@@ -99,6 +98,7 @@ std::string wanted(const Key& key) {
   if (std::holds_alternative<std::optional<double>*>(slot)) return a_number("a number", key) + " or \"auto\"";
   const bool is_whole = std::holds_alternative<int*>(slot) || std::holds_alternative<std::int64_t*>(slot) ||
                         std::holds_alternative<std::uint64_t*>(slot);
+  if (is_whole && key.range.high == key.range.low + 1.0) return bound(key.range.low) + " or " + bound(key.range.high);
   return a_number(is_whole ? "a whole number" : "a number", key);
 }
 

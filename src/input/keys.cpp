@@ -101,8 +101,8 @@ constexpr Condition near_field{"[near_field] is present", [](const Input& in) { 
 // clang-format off
 std::vector<Key> general_keys() {
   return {
-    whole("schema_version", at(&Input::schema_version), between(1, 1), "1",
-          "Version of these keys; files written for another one are refused, not guessed at."),
+    only(1, whole("schema_version", at(&Input::schema_version), at_least(1), "1",
+          "Version of these keys; files written for another one are refused, not guessed at.")),
     whole("seed", at(&Input::seed), at_least(0), "1",
           "Names the pack among all packs of the scene: radii and positions are functions of it."),
     later({"balanced", "draft"},
@@ -219,7 +219,7 @@ std::vector<Key> dynamics_keys() {
   return {
     word("dynamics.rotation", at(dynamics, &Dynamics::rotation), "true",
          "Particles spin. Off: there is no spin state at all, and slip is measured between centres."),
-    only(0.0, real("dynamics.theta", at(dynamics, &Dynamics::theta), plain, between(0, 1), "0.0",
+    only(0, real("dynamics.theta", at(dynamics, &Dynamics::theta), plain, between(0, 1), "0.0",
          "Time integration: 0 is the explicit Algorithm 2 of the paper.")),
     real("dynamics.time_step", at(dynamics, &Dynamics::time_step), time, above(0), "auto",
          "Time step, or \"auto\": from the contact duration, eq. (23)."),
@@ -227,7 +227,7 @@ std::vector<Key> dynamics_keys() {
          "What ends the dynamics of a layer: its duration.")),
     later({"mixed"}, word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
          "Arithmetic of the contact law.")),
-    only(0.0, whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
+    only(0, whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
          "0: all particles move.")),
   };
 }
@@ -236,8 +236,8 @@ std::vector<Key> program_keys() {
   return {
     word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
          "How lateral columns are shared among ranks: slices, pencils, or METIS parts. Changes no bit of the pack."),
-    only(1.0, whole("ensemble.sets", at(&Input::ensemble, &Ensemble::sets), between(1, 1 << 24), "1", "Sets of packs.")),
-    only(1.0, whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 24), "1", "Packs of a set.")),
+    only(1, whole("ensemble.sets", at(&Input::ensemble, &Ensemble::sets), between(1, 1 << 24), "1", "Sets of packs.")),
+    only(1, whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 24), "1", "Packs of a set.")),
     refused(word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("")", "Wall time between checkpoints.")),
     word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),
     real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -132,8 +131,10 @@ std::string file_text(const std::string& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(fmt::format("cannot be opened ({}); check the path", std::generic_category().message(errno)));
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text(Document::longest_file + 1, '\0');  // one byte more is refused; /dev/zero has no end
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad()) refuse("cannot be read to its end; check the file system");
+  text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }
 

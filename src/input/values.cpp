@@ -82,8 +82,8 @@ std::string_view chosen(const Arrival& arrival) {
   const auto found = std::ranges::find(known, *text);
   if (found != known.end()) return *found;
   if (const auto near = text::closest(*text, std::vector<std::string>(known.begin(), known.end()))) {
-    arrival.refuse(fmt::format("{} is not a choice, did you mean \"{}\"?; give {}", describe(arrival.node), *near,
-                               wanted(arrival.key)));
+    arrival.refuse(fmt::format("{} is not a choice; give {} (did you mean \"{}\"?)", describe(arrival.node),
+                               wanted(arrival.key), *near));
   }
   arrival.refuse(fmt::format("{} is not a choice; give {}", describe(arrival.node), wanted(arrival.key)));
 }

@@ -1,0 +1,319 @@
+// Right scenes: every key arrives, defaults are the documented ones, units are exact, the effective input is a fixed
+// point.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "input/keys.hpp"
+#include "input/read.hpp"
+#include "input/units.hpp"
+
+namespace packmpi::input {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+const std::string least =
+    "[container]\nsize = [1.0, 1.0, 0.5]\n"
+    "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\npoisson_ratio = 0.25\n"
+    "radius = { distribution = \"equal\", value = 0.02 }\n"
+    "[layers]\nthickness = 0.1\nfraction = 0.25\n[jamming]\ngravity = 2.0\n";
+
+/// Every key of the table that can be given, none at its default.
+const std::string full = R"(
+schema_version = 1
+seed = 9223372036854775807
+fidelity = "paper"
+[container]
+dimension = 2
+size = ["100 cm", 0.5]
+boundary = ["periodic"]
+[particles]
+density = "2.5 g/cm3"
+youngs_modulus = "100 MPa"
+poisson_ratio = 0.3
+[particles.radius]
+distribution = "gaussian"
+mean = "10 mm"
+sd = "1000 um"
+min = 0.007
+max = 0.013
+weighting = "number"
+[layers]
+thickness = 0.2
+fraction = "40 %"
+duration = "500 ms"
+height = "highest"
+velocity = [0.1, "-5 cm/s"]
+spin = [3.0]
+attempts = 77
+maximum = 9
+[jamming]
+gravity = 3
+[contact]
+damping_ratio = 0.3
+friction = 0.4
+wall_friction = 0.5
+friction_velocity = "centre"
+regularisation = "viscous"
+slip_time = "2 ms"
+tension_cutoff = false
+wall = "material"
+[drag]
+coefficient = "5 g/s"
+fluid_velocity = [1.0, 2.0]
+[near_field]
+alpha1 = 1.5e-5
+beta1 = 2.0
+alpha2 = 2.5e-9
+beta2 = 4.0
+cutoff = "50 mm"
+[dynamics]
+rotation = true
+theta = 0
+time_step = "0.1 ms"
+stop = "duration"
+precision = "double"
+window = 0
+[parallel]
+decomposition = "metis"
+[ensemble]
+sets = 1
+packs = 1
+[output]
+contacts = true
+log_every = 0
+[petsc]
+options = "-log_view :\"a b\".txt"
+)";
+
+TEST(GoodInput, EveryGeneralKeyArrives) {
+  const Input in = parse(full, "some/where/brick.v2.toml", {});
+  EXPECT_EQ(in.name, "brick.v2");
+  EXPECT_EQ(in.file, "some/where/brick.v2.toml");
+  EXPECT_EQ(in.seed, 9223372036854775807U);
+  EXPECT_EQ(in.container.dimension, 2);
+  EXPECT_EQ(in.container.size, (std::vector<double>{1.0, 0.5}));
+  EXPECT_EQ(in.container.boundary, std::vector<Boundary>{Boundary::periodic});
+  EXPECT_EQ(in.particles.density, 2500.0);
+  EXPECT_EQ(in.particles.youngs_modulus, 1e8);
+  EXPECT_EQ(in.particles.poisson_ratio, 0.3);
+  const Radius& radius = in.particles.radius;
+  EXPECT_EQ(radius.distribution, SizeDistribution::gaussian);
+  EXPECT_EQ(radius.mean, 0.01);
+  EXPECT_EQ(radius.sd, 0.001);
+  EXPECT_EQ(radius.min, 0.007);
+  EXPECT_EQ(radius.max, 0.013);
+  EXPECT_EQ(radius.weighting, "number");
+  EXPECT_EQ(in.layers.thickness, 0.2);
+  EXPECT_EQ(in.layers.fraction, 0.4);
+  EXPECT_EQ(in.layers.duration, 0.5);
+  EXPECT_EQ(in.layers.height, HeightRule::highest);
+  EXPECT_EQ(in.layers.velocity, (Vec3{0.1, -0.05, 0.0}));
+  EXPECT_EQ(in.layers.spin, (Vec3{0.0, 0.0, 3.0}));
+  EXPECT_EQ(in.layers.attempts, 77);
+  EXPECT_EQ(in.layers.maximum, 9);
+}
+
+TEST(GoodInput, EveryForceAndProgramKeyArrives) {
+  const Input in = parse(full, "a.toml", {});
+  EXPECT_EQ(in.jamming.gravity, 3.0);
+  EXPECT_EQ(in.contact.damping_ratio, 0.3);
+  EXPECT_EQ(in.contact.friction, 0.4);
+  EXPECT_EQ(in.contact.wall_friction, 0.5);
+  EXPECT_EQ(in.contact.friction_velocity, FrictionVelocity::centre);
+  EXPECT_EQ(in.contact.regularisation, Regularisation::viscous);
+  EXPECT_EQ(in.contact.slip_time, 0.002);
+  EXPECT_FALSE(in.contact.tension_cutoff);
+  EXPECT_EQ(in.contact.wall, WallStiffness::material);
+  EXPECT_EQ(in.drag.coefficient, 0.005);
+  EXPECT_EQ(in.drag.fluid_velocity, (Vec3{1.0, 2.0, 0.0}));
+  ASSERT_TRUE(in.near_field.has_value());
+  EXPECT_EQ(in.near_field->alpha1, 1.5e-5);
+  EXPECT_EQ(in.near_field->beta1, 2.0);
+  EXPECT_EQ(in.near_field->alpha2, 2.5e-9);
+  EXPECT_EQ(in.near_field->beta2, 4.0);
+  EXPECT_EQ(in.near_field->cutoff, 0.05);
+  EXPECT_EQ(in.dynamics.time_step, 1e-4);
+  EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);
+  EXPECT_TRUE(in.output.contacts);
+  EXPECT_EQ(in.output.log_every, 0.0);
+  EXPECT_EQ(in.petsc.options, "-log_view :\"a b\".txt");
+}
+
+TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
+  const Input in = parse(least, "a.toml", {});
+  EXPECT_EQ(in.seed, 1U);
+  EXPECT_EQ(in.fidelity, "paper");
+  EXPECT_EQ(in.container.dimension, 3);
+  EXPECT_EQ(in.container.boundary, (std::vector<Boundary>{Boundary::wall, Boundary::wall}));
+  EXPECT_EQ(in.layers.duration, 1.0);
+  EXPECT_EQ(in.layers.height, HeightRule::surface);
+  EXPECT_EQ(in.layers.velocity, Vec3{});
+  EXPECT_EQ(in.layers.spin, Vec3{});
+  EXPECT_EQ(in.layers.attempts, 10000);
+  EXPECT_EQ(in.layers.maximum, 0);
+  EXPECT_EQ(in.contact.damping_ratio, 0.1);
+  EXPECT_EQ(in.contact.friction, 0.2);
+  EXPECT_EQ(in.contact.wall_friction, 0.2);
+  EXPECT_EQ(in.contact.friction_velocity, FrictionVelocity::contact);
+  EXPECT_EQ(in.contact.regularisation, Regularisation::stop);
+  EXPECT_TRUE(in.contact.tension_cutoff);
+  EXPECT_EQ(in.contact.wall, WallStiffness::rigid);
+  EXPECT_EQ(in.drag.coefficient, 0.0);
+  EXPECT_FALSE(in.near_field.has_value());
+  EXPECT_TRUE(in.dynamics.rotation);
+  EXPECT_FALSE(in.dynamics.time_step.has_value());
+  EXPECT_EQ(in.parallel.decomposition, Decomposition::slab);
+  EXPECT_FALSE(in.output.contacts);
+  EXPECT_EQ(in.output.log_every, 0.01);
+  EXPECT_EQ(in.petsc.options, "");
+}
+
+TEST(GoodInput, WallFrictionFollowsFriction) {
+  EXPECT_EQ(parse(least, "a.toml", {{"contact.friction=0.7"}}).contact.wall_friction, 0.7);
+}
+
+TEST(GoodInput, UniformRadii) {
+  const Input in =
+      parse(least, "a.toml",
+            {{"particles.radius={ distribution = \"uniform\", min = 0.01, max = \"2 cm\", weighting = \"number\" }"}});
+  EXPECT_EQ(in.particles.radius.distribution, SizeDistribution::uniform);
+  EXPECT_EQ(in.particles.radius.min, 0.01);
+  EXPECT_EQ(in.particles.radius.max, 0.02);
+}
+
+TEST(GoodInput, OverridesWin) {
+  const Input in = parse(least, "a.toml",
+                         {{"seed=7", "layers.thickness=120 mm", "layers.thickness=0.15", " contact . wall = material ",
+                           "container.boundary=[\"periodic\", \"wall\"]", "petsc.options=-log_view"}});
+  EXPECT_EQ(in.seed, 7U);
+  EXPECT_EQ(in.layers.thickness, 0.15);
+  EXPECT_EQ(in.contact.wall, WallStiffness::material);
+  EXPECT_EQ(in.container.boundary.front(), Boundary::periodic);
+  EXPECT_EQ(in.petsc.options, "-log_view");
+}
+
+TEST(GoodInput, EffectiveInputIsAFixedPointAndHidesNothing) {
+  for (const std::string& text : {least, full}) {
+    const Input in = parse(text, "a.toml", {});
+    EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective);
+  }
+  const std::string effective = parse(full, "a.toml", {}).effective;
+  for (const Key& key : keys()) {
+    if (key.refused || key.path == "particles.radius.value") continue;
+    std::string line(key.path.substr(key.path.rfind('.') + 1));
+    line.insert(0, 1, '\n').append(" = ");
+    EXPECT_NE(("\n" + effective).find(line), std::string::npos) << key.path;
+  }
+}
+
+TEST(GoodInput, EffectiveInputIsOfTheSameScene) {
+  const Input in = parse(parse(full, "a.toml", {}).effective, "a.toml", {});
+  EXPECT_EQ(in.particles.density, 2500.0);
+  EXPECT_EQ(in.layers.spin, (Vec3{0.0, 0.0, 3.0}));
+  EXPECT_EQ(in.petsc.options, "-log_view :\"a b\".txt");
+  EXPECT_EQ(in.near_field->alpha2, 2.5e-9);
+}
+
+TEST(Units, AreExact) {
+  const auto metres = [](const char* text) { return parse_scalar(text, length).value; };
+  EXPECT_EQ(metres("20 mm"), 0.02);
+  EXPECT_EQ(metres("0.3mm"), 0.0003);  // 0.3 * 1e-3 is another double
+  EXPECT_EQ(metres(" 12.3e-1 \t um "), 1.23e-6);
+  EXPECT_EQ(metres("1E+2 nm"), 1e-7);
+  EXPECT_EQ(metres("7 km"), 7000.0);
+  EXPECT_EQ(metres("-1 cm"), -0.01);
+  EXPECT_EQ(parse_scalar("1 g/cm3", density).value, 1000.0);
+  EXPECT_EQ(parse_scalar("48 GPa", pressure).value, 48e9);
+  EXPECT_EQ(parse_scalar("5 mN s/m", drag_factor).value, 0.005);
+  for (const char* wrong :
+       {"", "mm", "1", "1 MM", "1 m m", "nan m", "inf m", "0x1p3 m", "1e m", "1e99999 m", "--1 m"}) {
+    EXPECT_FALSE(metres(wrong).has_value()) << wrong;
+  }
+}
+
+TEST(KeyTable, IsConsistent) {
+  for (const Key& key : keys()) {
+    EXPECT_EQ(find_key(key.path), &key) << "declared twice: " << key.path;
+    EXPECT_TRUE(key.doc.ends_with('.')) << key.path;
+    for (const std::string_view word : choices(key)) EXPECT_NE(wanted(key).find(word), std::string::npos) << key.path;
+  }
+}
+
+/// The scenes we ship must stay readable: with what a newcomer would change, too.
+TEST(Scenes, AreAllGood) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(PACKMPI_SOURCE_DIR) / "input")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const Input in = parse(text_of(entry.path()), entry.path().string(), {});
+    EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << entry.path();
+  }
+  EXPECT_GE(count, 8);
+}
+
+TEST(Scenes, ThePapersAreThePapers) {
+  for (const auto& [name, dimension, r, sd, fraction] : {std::tuple{"5_1", 2, 0.01, 0.0, 0.4},
+                                                         {"5_2", 2, 0.01, 0.001, 0.4},
+                                                         {"5_3", 3, 0.02, 0.0, 0.25},
+                                                         {"5_4", 3, 0.02, 0.002, 0.25}}) {
+    const fs::path path = fs::path(PACKMPI_SOURCE_DIR) / "input" / (std::string("paper_") + name + ".toml");
+    const Input in = parse(text_of(path), path.string(), {});
+    EXPECT_EQ(in.container.size,
+              dimension == 2 ? std::vector<double>({1.0, 0.5}) : std::vector<double>({1.0, 1.0, 0.5}));
+    const Radius& radius = in.particles.radius;
+    EXPECT_EQ(sd > 0.0 ? radius.mean : radius.value, r) << name;
+    EXPECT_EQ(radius.sd, sd) << name;
+    EXPECT_EQ(radius.min, sd > 0.0 ? r == 0.01 ? 0.007 : 0.014 : 0.0) << name;
+    EXPECT_EQ(radius.max, sd > 0.0 ? r == 0.01 ? 0.013 : 0.026 : 0.0) << name;
+    EXPECT_EQ(in.layers.fraction, fraction) << name;
+    EXPECT_EQ(in.layers.thickness, 0.1) << name;
+    EXPECT_EQ(in.layers.duration, 1.0) << name;
+    EXPECT_EQ(in.particles.density, 1000.0) << name;
+    EXPECT_EQ(in.particles.youngs_modulus, 1e8) << name;
+    EXPECT_EQ(in.particles.poisson_ratio, 0.25) << name;
+    EXPECT_EQ(in.contact.damping_ratio, 0.1) << name;
+    EXPECT_EQ(in.contact.friction, 0.2) << name;
+    EXPECT_EQ(in.contact.wall_friction, 0.2) << name;
+    EXPECT_EQ(in.jamming.gravity, 2.0) << name;
+    EXPECT_EQ(in.drag.coefficient, 0.005) << name;
+    EXPECT_EQ(in.dynamics.time_step, 1e-4) << name;
+    EXPECT_TRUE(in.dynamics.rotation) << name;
+    EXPECT_FALSE(in.near_field.has_value()) << name;
+  }
+}
+
+/// doc/input.md holds reference() between two markers. PACKMPI_UPDATE_DOC=1 in the environment writes it anew.
+TEST(Documentation, KeyTablesAreNotStale) {
+  const std::string begin = "<!-- generated from src/input/keys.cpp: begin -->\n", end = "<!-- generated: end -->";
+  const fs::path path = fs::path(PACKMPI_SOURCE_DIR) / "doc/input.md";
+  const std::string page = text_of(path);
+  ASSERT_NE(page.find(begin), std::string::npos);
+  ASSERT_NE(page.find(end), std::string::npos);
+  const std::size_t from = page.find(begin) + begin.size();
+  const std::string fresh = page.substr(0, from) + reference() + page.substr(page.find(end));
+  if (std::getenv("PACKMPI_UPDATE_DOC") != nullptr) std::ofstream(path, std::ios::binary) << fresh;
+  EXPECT_TRUE(text_of(path) == fresh)
+      << "doc/input.md is older than the key table: run this test with PACKMPI_UPDATE_DOC=1 in the environment";
+}
+
+/// The documentation's first scene is a scene.
+TEST(Documentation, ExampleReads) {
+  const std::string page = text_of(fs::path(PACKMPI_SOURCE_DIR) / "doc/input.md");
+  const std::size_t begin = page.find("```toml\n") + 8;
+  const Input in = parse(page.substr(begin, page.find("```", begin) - begin), "input.md", {});
+  EXPECT_EQ(in.container.size.size(), 3U);
+}
+
+}  // namespace
+}  // namespace packmpi::input
