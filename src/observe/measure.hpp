@@ -15,57 +15,59 @@ namespace packmpi::observe {
 [[nodiscard]] double top(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// Mean over lateral columns about one largest diameter wide (floor(L / (2 r_max)) per axis, at least 1) of the highest
-/// particle top in the column (by centre; an empty column counts 0) [m]. Collective; a PETSc DMDA vector holds the columns.
+/// particle top in the column (by centre; an empty column counts 0) [m]. Collective; a PETSc DMDA vector holds the
+/// columns.
 [[nodiscard]] double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// Solid fractions (CC16 eq. 22).
 struct Density {
-  double phi;        ///< below H_d
-  double phi_bulk;   ///< between 0.2 H_d and 0.8 H_d
+  double phi;       ///< below H_d
+  double phi_bulk;  ///< between 0.2 H_d and 0.8 H_d
 };
-[[nodiscard]] Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);   ///< collective
+[[nodiscard]] Density density(const comm::Comm& comm, const particles::Store& store,
+                              const scene::Scene& scene);  ///< collective
 
 /// Energy and motion of all particles. Collective.
 struct Motion {
-  double kinetic_energy;    ///< [J] translation and spin
-  double max_speed;         ///< [m/s]
-  double mean_height;       ///< [m] of the centres
-  double mass;              ///< [kg]
+  double kinetic_energy;  ///< [J] translation and spin
+  double max_speed;       ///< [m/s]
+  double mean_height;     ///< [m] of the centres
+  double mass;            ///< [kg]
 };
 [[nodiscard]] Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// Contacts at this instant, from current lists and ghosts. Collective.
 struct Contacts {
-  std::vector<std::int32_t> of_particle;   ///< touching particles of each owned slot (walls not counted)
-  std::int64_t pairs = 0;                  ///< touching pairs, over all ranks
-  double coordination = 0.0;               ///< 2 pairs / particles
-  double rattlers = 0.0;                   ///< share of particles with fewer than dimension + 1 contacts (walls counted here)
-  double mean_overlap = 0.0;               ///< over touching pairs, overlap / smaller radius
+  std::vector<std::int32_t> of_particle;  ///< touching particles of each owned slot (walls not counted)
+  std::int64_t pairs = 0;                 ///< touching pairs, over all ranks
+  double coordination = 0.0;              ///< 2 pairs / particles
+  double rattlers = 0.0;      ///< share of particles with fewer than dimension + 1 contacts (walls counted here)
+  double mean_overlap = 0.0;  ///< over touching pairs, overlap / smaller radius
   double max_overlap = 0.0;
-  double max_wall_penetration = 0.0;       ///< penetration / radius
+  double max_wall_penetration = 0.0;  ///< penetration / radius
 };
 [[nodiscard]] Contacts contacts(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                                 const neighbor::PairList& pairs, const neighbor::WallList& walls);
 
 /// Radii got. Collective.
 struct SizeStatistics {
-  double mean, sd, min, max;   ///< [m], by number
+  double mean, sd, min, max;  ///< [m], by number
 };
 [[nodiscard]] SizeStatistics sizes(const comm::Comm& comm, const particles::Store& store);
 
 /// Particles that are where no particle may be. Collective.
 struct Soundness {
-  std::int64_t found = 0;        ///< owned over all ranks
+  std::int64_t found = 0;  ///< owned over all ranks
   std::int64_t non_finite = 0;
-  std::int64_t outside = 0;      ///< centre beyond a wall or the floor
+  std::int64_t outside = 0;  ///< centre beyond a wall or the floor
 };
 [[nodiscard]] Soundness soundness(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// The force of one contact, for /contacts of the pack file.
 struct ContactForce {
-  GlobalId first, second;   ///< first < second
-  double overlap;           ///< [m]
-  Vec3 force;               ///< [N] on the first: normal and friction, without near field
+  GlobalId first, second;  ///< first < second
+  double overlap;          ///< [m]
+  Vec3 force;              ///< [N] on the first: normal and friction, without near field
 };
 /// The touching pairs whose smaller id is owned here, sorted by (first, second). Local; cost O(pairs log pairs).
 /// Every pair of the scene is returned by exactly one rank, with the same bits on any number of them.

@@ -1,0 +1,51 @@
+/// Where two particles, or a particle and a wall, touch. Private to this room.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/box.hpp"
+#include "neighbor/lists.hpp"
+#include "particles/store.hpp"
+
+namespace packmpi::observe {
+
+/// The gap between two particles, seen from `i`.
+struct Touch {
+  double overlap;  ///< r_i + r_j - distance [m]; positive: they touch
+  Vec3 normal;     ///< unit vector from i to j, shortest image; zero if the centres coincide
+};
+
+/// Slots i and j, owned or ghosts. Antisymmetric to the last bit: the same overlap from either side.
+[[nodiscard]] inline Touch touch(const particles::Store& store, const geometry::Box& box, LocalIndex i, LocalIndex j) {
+  const Vec3 a = store.position(i);
+  const Vec3 b = store.position(j);
+  Vec3 d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {
+    if (box.periodic[axis]) d[axis] = geometry::shortest(d[axis], box.size[axis]);
+  }
+  const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  const double inverse = distance > 0.0 ? 1.0 / distance : 0.0;
+  return {store.radius(i) + store.radius(j) - distance, {d[0] * inverse, d[1] * inverse, d[2] * inverse}};
+}
+
+/// Depth by which owned particle `i` is inside a wall [m]; positive: it touches.
+[[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Box& box, LocalIndex i,
+                                             neighbor::Wall wall) {
+  const Vec3 x = store.position(i);
+  const double r = store.radius(i);
+  switch (wall) {
+    case neighbor::Wall::floor:
+      return r - x[static_cast<std::size_t>(box.vertical())];
+    case neighbor::Wall::x_low:
+      return r - x[0];
+    case neighbor::Wall::x_high:
+      return r - (box.size[0] - x[0]);
+    case neighbor::Wall::y_low:
+      return r - x[1];
+    case neighbor::Wall::y_high:
+      return r - (box.size[1] - x[1]);
+  }
+  return 0.0;  // not reached: the switch is complete
+}
+
+}  // namespace packmpi::observe
