@@ -1,6 +1,7 @@
 #include "base/log.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
@@ -45,7 +46,7 @@ TEST(Log, OtherRanksOnlyWarnAndSayWhoTheyAre) {
 }
 
 TEST(Log, FileGetsEverythingAndIsAppendedTo) {
-  const std::string name = ::testing::TempDir() + "packmpi_log_test.txt";
+  const std::string name = ::testing::TempDir() + "packmpi_log_test_" + std::to_string(getpid()) + ".txt";
   std::remove(name.c_str());
   said(0, Verbosity::quiet, name);
   said(0, Verbosity::quiet, name);
