@@ -142,7 +142,7 @@ void Neighborhood::sort_owned(particles::Store& store) {
 std::vector<Sends> Neighborhood::choose_sends(const particles::Store& store) const {
   std::vector<Sends> sends;
   for (const Rank rank : ownership_->neighbors()) sends.push_back({rank, {}});
-  const double range = scene_->column_width();
+  const double range = scene_->column_width() * (1.0 + 1e-12);   // distance() is rounded
   const auto levels = static_cast<std::size_t>(cells_.levels);
   for (const LocalColumns::Border& border : columns_.borders()) {
     std::vector<LocalIndex>& slots = std::ranges::find(sends, border.rank, &Sends::rank)->slots;

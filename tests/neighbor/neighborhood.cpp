@@ -1,0 +1,283 @@
+// Lists, ghosts and migration against brute force over all pairs, on every rank count and decomposition.
+#include "neighbor/neighborhood.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <random>
+#include <set>
+
+#include "support/scenes.hpp"
+
+namespace packmpi::neighbor {
+namespace {
+
+using Pair = std::pair<GlobalId, GlobalId>;
+
+struct Ball {
+  Vec3 x, v, omega;
+  double r;
+};
+
+// The same cloud on every rank.
+std::vector<Ball> cloud(const scene::Scene& scene, std::size_t count) {
+  std::mt19937_64 bits(7);
+  const auto u = [&bits](double low, double high) {
+    return low + (high - low) * static_cast<double>(bits() >> 11U) * 0x1p-53;
+  };
+  std::vector<Ball> balls(count);
+  for (Ball& b : balls) {
+    b.r = u(scene.sizes.smallest(), scene.sizes.largest());
+    if (scene.sizes.equal()) b.r = scene.sizes.largest();
+    for (int a = 0; a < scene.box.dimension; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      b.x[axis] = u(0.0, scene.box.size[axis]);
+      b.v[axis] = u(-1.0, 1.0);
+    }
+    b.omega = scene.box.dimension == 3 ? Vec3{u(-1, 1), u(-1, 1), u(-1, 1)} : Vec3{0, 0, u(-1, 1)};
+  }
+  return balls;
+}
+
+double distance(const geometry::Box& box, const Vec3& a, const Vec3& b) {
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.dimension); ++axis) {
+    double d = std::abs(a[axis] - b[axis]);
+    if (axis < static_cast<std::size_t>(box.lateral_axes()) && box.periodic[axis]) d = std::min(d, box.size[axis] - d);
+    squared += d * d;
+  }
+  return std::sqrt(squared);
+}
+
+// A pile in this test: balls dealt out to whatever rank, brought home by the first rebuild.
+struct World {
+  World(const comm::Comm& comm, const input::Input& in, std::size_t count)
+      : scene(scene::build(in)),
+        ownership(comm, geometry::ColumnGrid(scene.box, scene.column_width()), in.parallel.decomposition),
+        store(scene.features.layout()),
+        hood(comm, scene, ownership),
+        balls(cloud(scene, count)) {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (static_cast<int>(k * k % static_cast<std::size_t>(comm.size())) != comm.rank()) continue;
+      store.add(static_cast<GlobalId>(k), balls[k].x, balls[k].r, balls[k].v, balls[k].omega);
+    }
+    hood.rebuild(store);
+  }
+  scene::Scene scene;
+  scene::Ownership ownership;
+  particles::Store store;
+  Neighborhood hood;
+  std::vector<Ball> balls;
+};
+
+std::set<GlobalId> owned_ids(const particles::Store& store) {
+  const auto ids = store.ids().first(static_cast<std::size_t>(store.owned()));
+  return {ids.begin(), ids.end()};
+}
+
+// Pairs of the list by id; every pair at most once, and first ascending, second above first.
+std::set<Pair> listed(const particles::Store& store, const PairList& list) {
+  std::set<Pair> pairs;
+  for (std::size_t p = 0; p < list.first.size(); ++p) {
+    EXPECT_LT(list.first[p], list.second[p]);
+    EXPECT_LT(list.first[p], store.owned());
+    if (p > 0) EXPECT_LE(list.first[p - 1], list.first[p]);
+    if (list.second[p] < store.owned()) EXPECT_LT(list.second[p] - list.first[p], list.window);
+    const GlobalId a = store.ids()[static_cast<std::size_t>(list.first[p])];
+    const GlobalId b = store.ids()[static_cast<std::size_t>(list.second[p])];
+    EXPECT_TRUE(pairs.insert(std::minmax(a, b)).second) << a << " " << b;
+  }
+  return pairs;
+}
+
+template <class Cut>
+std::set<Pair> expected(const World& w, Cut cut) {
+  const std::set<GlobalId> mine = owned_ids(w.store);
+  std::set<Pair> pairs;
+  for (std::size_t i = 0; i < w.balls.size(); ++i) {
+    for (std::size_t j = i + 1; j < w.balls.size(); ++j) {
+      const Pair pair{static_cast<GlobalId>(i), static_cast<GlobalId>(j)};
+      if (!mine.contains(pair.first) && !mine.contains(pair.second)) continue;
+      if (distance(w.scene.box, w.balls[i].x, w.balls[j].x) < cut(w.balls[i], w.balls[j])) pairs.insert(pair);
+    }
+  }
+  return pairs;
+}
+
+std::vector<input::Input> scenes() {
+  std::vector<input::Input> all;
+  for (const int dimension : {2, 3}) {
+    const double r = dimension == 2 ? 0.03 : 0.05;
+    for (const auto& in : {test::small_input(dimension, 2.0, r), test::graded_input(dimension, 2.0, 0.5 * r, 2.0)}) {
+      all.push_back(in);
+      all.push_back(test::periodic(in));
+    }
+  }
+  all.push_back(test::periodic(test::small_input(3, 2.0, 0.05)));
+  all.back().near_field = input::NearField{1e-6, 2.0, 0.0, 0.0, 0.16};
+  std::vector<input::Input> decomposed;
+  for (const input::Input& in : all) {
+    for (const auto kind : {input::Decomposition::slab, input::Decomposition::pencil, input::Decomposition::metis}) {
+      decomposed.push_back(in);
+      decomposed.back().parallel.decomposition = kind;
+    }
+  }
+  return decomposed;
+}
+
+TEST(Neighborhood, ListsEveryPairWithinTheCutOnceOnEachRankThatOwnsAnEnd) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const input::Input& in : scenes()) {
+    const World w(comm, in, 700);
+    const double skin = w.scene.skin;
+    EXPECT_EQ(listed(w.store, w.hood.pairs()),
+              expected(w, [skin](const Ball& a, const Ball& b) { return a.r + b.r + skin; }));
+    if (!in.near_field) continue;
+    const double cut = in.near_field->cutoff + skin;
+    EXPECT_EQ(listed(w.store, w.hood.near_pairs()), expected(w, [cut](const Ball&, const Ball&) { return cut; }));
+  }
+}
+
+TEST(Neighborhood, MigrationLosesNothingAndBringsEveryoneHome) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const input::Input& in : scenes()) {
+    const World w(comm, in, 300);
+    EXPECT_EQ(comm.sum(std::int64_t{w.store.owned()}), 300);
+    std::vector<std::int64_t> seen(300, 0);
+    for (LocalIndex i = 0; i < w.store.owned(); ++i) {
+      EXPECT_EQ(w.ownership.owner(w.ownership.grid().column(w.store.position(i))), comm.rank());
+      const auto id = static_cast<std::size_t>(w.store.ids()[static_cast<std::size_t>(i)]);
+      ++seen[id];
+      EXPECT_EQ(w.store.position(i), w.balls[id].x);
+      EXPECT_EQ(w.store.radius(i), w.balls[id].r);
+      EXPECT_EQ(w.store.velocity(i), w.balls[id].v);
+    }
+    comm.sum(seen);
+    for (const std::int64_t n : seen) EXPECT_EQ(n, 1);
+  }
+}
+
+TEST(Neighborhood, WallListHoldsWhoeverIsWithinSkinOfAWall) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const World w(comm, test::graded_input(3, 2.0, 0.03, 2.0), 500);
+  std::map<std::pair<GlobalId, Wall>, int> got;
+  for (std::size_t k = 0; k < w.hood.walls().particle.size(); ++k) {
+    ++got[{w.store.ids()[static_cast<std::size_t>(w.hood.walls().particle[k])], w.hood.walls().wall[k]}];
+    if (k > 0) EXPECT_LE(w.hood.walls().particle[k - 1], w.hood.walls().particle[k]);
+  }
+  for (const GlobalId id : owned_ids(w.store)) {
+    const Ball& b = w.balls[static_cast<std::size_t>(id)];
+    const double range = b.r + w.scene.skin;
+    const std::array<std::pair<Wall, bool>, 5> walls{{{Wall::floor, b.x[2] < range},
+                                                      {Wall::x_low, b.x[0] < range},
+                                                      {Wall::x_high, 2.0 - b.x[0] < range},
+                                                      {Wall::y_low, b.x[1] < range},
+                                                      {Wall::y_high, 2.0 - b.x[1] < range}}};
+    for (const auto& [wall, near] : walls) EXPECT_EQ((got.contains({id, wall})), near);
+  }
+}
+
+// Moves every owned particle by a step of its velocity, as the dynamics would, wrapping periodic axes.
+double move(World& w, double dt) {
+  double fastest = 0.0;
+  for (LocalIndex i = 0; i < w.store.owned(); ++i) {
+    double* record = w.store.record(i);
+    const particles::Layout& layout = w.store.layout();
+    double squared = 0.0;
+    for (int a = 0; a < layout.dimension; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      double& v = record[layout.velocity + a];
+      double& x = record[a];
+      x += v * dt;
+      if (a < w.scene.box.lateral_axes() && w.scene.box.periodic[axis]) {
+        x = geometry::wrap(x, w.scene.box.size[axis]);
+      } else if (x < 0.0 || x > w.scene.box.size[axis]) {
+        v = -v;
+      }
+      squared += v * v;
+    }
+    fastest = std::max(fastest, squared);
+  }
+  return std::sqrt(fastest);
+}
+
+TEST(Neighborhood, FollowsMotionWithoutMissingATouchAndGhostsCarryTheirOwnersBits) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const input::Input& in : scenes()) {
+    World w(comm, in, 300);
+    const double dt = 0.06 * w.scene.skin;
+    for (int step = 0; step < 60; ++step) {
+      const double fastest = move(w, dt);
+      ASSERT_FALSE(w.hood.follow(w.store, fastest, dt, false));
+    }
+    EXPECT_GT(w.hood.rebuilds(), 3);
+    EXPECT_LT(w.hood.rebuilds(), 60);
+    // Everyone's present state, by id, through an order-free sum of bits (each id is owned once).
+    std::vector<std::int64_t> bits(300 * 5, 0);
+    const auto state = [&](LocalIndex i, std::int64_t* out) {
+      const Vec3 x = w.store.position(i);
+      const Vec3 v = w.store.velocity(i);
+      std::memcpy(out, x.data(), sizeof x);
+      std::memcpy(out + 3, v.data(), 2 * sizeof(double));
+    };
+    for (LocalIndex i = 0; i < w.store.owned(); ++i)
+      state(i, &bits[5 * static_cast<std::size_t>(w.store.ids()[static_cast<std::size_t>(i)])]);
+    comm.sum(bits);
+    for (LocalIndex i = w.store.owned(); i < w.store.total(); ++i) {
+      std::array<std::int64_t, 5> ghost{};
+      state(i, ghost.data());
+      const std::int64_t* owner = &bits[5 * static_cast<std::size_t>(w.store.ids()[static_cast<std::size_t>(i)])];
+      EXPECT_TRUE(std::equal(ghost.begin(), ghost.end(), owner));
+    }
+    for (std::size_t k = 0; k < 300; ++k) std::memcpy(w.balls[k].x.data(), &bits[5 * k], sizeof(Vec3));
+    // All that touch now are in the lists made a while ago.
+    const std::set<Pair> pairs = listed(w.store, w.hood.pairs());
+    for (const Pair& pair : expected(w, [](const Ball&a, const Ball&b) { return a.r + b.r; })) {
+      EXPECT_TRUE(pairs.contains(pair)) << pair.first << " " << pair.second;
+    }
+  }
+}
+
+TEST(Neighborhood, NamesAParticleThatLeftTheContainerOnAllRanks) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  World w(comm, test::small_input(3, 2.0, 0.05), 100);
+  for (LocalIndex i = 0; i < w.store.owned(); ++i) {
+    if (w.store.ids()[static_cast<std::size_t>(i)] == 42) w.store.record(i)[2] = std::nan("");
+  }
+  try {
+    w.hood.rebuild(w.store);
+    FAIL() << "a particle at NaN was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::numerical_failure);
+    EXPECT_NE(std::string(error.what()).find("particle 42 left the container"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Neighborhood, AFailureOnOneRankIsKnownToAll) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  World w(comm, test::small_input(3, 2.0, 0.05), 100);
+  EXPECT_TRUE(w.hood.follow(w.store, 0.0, 1e-4, comm.rank() == comm.size() - 1));
+  EXPECT_TRUE(w.hood.follow(w.store, comm.rank() == 0 ? std::nan("") : 0.0, 1e-4, false));
+  EXPECT_FALSE(w.hood.follow(w.store, 0.0, 1e-4, false));
+}
+
+TEST(Halo, CarriesOnlyWhatTheSceneUses) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const int dimension : {2, 3}) {
+    for (const bool rotation : {false, true}) {
+      input::Input in = test::small_input(dimension, 2.0, dimension == 2 ? 0.03 : 0.05);
+      in.dynamics.rotation = rotation;
+      World w(comm, in, 300);
+      const std::int64_t before = w.hood.halo().counters().bytes;
+      ASSERT_FALSE(w.hood.follow(w.store, 0.0, 1e-4, false));
+      const std::int64_t sent = comm.sum(w.hood.halo().counters().bytes - before);
+      const int doubles = 2 * dimension + (rotation ? (dimension == 3 ? 3 : 1) : 0);
+      EXPECT_EQ(sent, comm.sum(std::int64_t{w.store.ghosts()}) * 8 * doubles);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace packmpi::neighbor

@@ -1,0 +1,108 @@
+// The property everything parallel hangs on: one scene, one pack. The particle datasets of the pack file are identical,
+// bit for bit, at 1, 2, 3, 4, 6 and 8 ranks, in all decompositions, walls and periodic, 2D and 3D, equal and graded,
+// near field on and off. Runs on 8 ranks and makes smaller communicators of them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "base/timer.hpp"
+#include "output/pack.hpp"
+#include "run/make_pack.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi::run {
+namespace {
+
+using input::Decomposition;
+
+// Few particles, hard knocks: two layers fall, hit the floor, the walls and each other.
+input::Input scene_of(int dimension, bool graded, bool periodic, bool near_field) {
+  const double r = 0.02;
+  input::Input in =
+      graded ? test::graded_input(dimension, 0.6, 0.6 * r, 1.0 / 0.6) : test::small_input(dimension, 0.6, r);
+  if (dimension == 3) in.container.size = {0.66, 0.22, 0.12};
+  if (dimension == 2) in.container.size = {0.66, 0.2};
+  if (periodic) in = test::periodic(in);
+  if (near_field) in.near_field = input::NearField{1e-4, 2.0, 1e-6, 3.5, 0.06};
+  in.name = "same_bits";
+  in.layers.thickness = 0.1;
+  in.layers.fraction = dimension == 3 ? 0.25 : 0.4;
+  in.layers.duration = 0.03;
+  in.layers.maximum = 2;
+  in.layers.velocity = dimension == 3 ? Vec3{0.3, 0.2, -2.0} : Vec3{0.3, -2.0, 0.0};
+  in.jamming.gravity = 10.0;
+  in.drag.coefficient = 0.005;
+  in.dynamics.time_step = 1e-4;
+  in.output.log_every = 0.01;
+  return in;
+}
+
+output::PackRows pack_on(const comm::Comm& comm, const input::Input& in, const std::string& folder) {
+  Options options;
+  options.folder = folder;
+  options.force = true;
+  options.verbosity = log::Verbosity::quiet;
+  (void)make_pack(comm, scene::build(in), options);
+  return output::read_pack(folder + "/same_bits.hdf");
+}
+
+void expect_same(const output::PackRows& a, const output::PackRows& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.spin, b.spin);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.layer, b.layer);
+  EXPECT_EQ(a.contacts, b.contacts);
+}
+
+bool anything_touches(const output::PackRows& rows) {
+  return std::ranges::any_of(rows.contacts, [](std::int32_t n) { return n > 0; });
+}
+
+class SameBits : public ::testing::TestWithParam<std::tuple<int, bool, bool, bool>> {};
+
+TEST_P(SameBits, OnAnyRankCountInAnyDecomposition) {
+  const comm::Comm world(MPI_COMM_WORLD);
+  ASSERT_EQ(world.size(), 8);
+  const auto [dimension, graded, periodic, near_field] = GetParam();
+  const std::string folder =
+      std::filesystem::temp_directory_path() / ("packmpi_same_bits_" + std::to_string(::getppid()));
+  input::Input in = scene_of(dimension, graded, periodic, near_field);
+  std::optional<output::PackRows> reference;
+  for (const int ranks : {1, 2, 3, 4, 6, 8}) {
+    MPI_Comm part = MPI_COMM_NULL;
+    MPI_Comm_split(MPI_COMM_WORLD, world.rank() < ranks ? 0 : 1, world.rank(), &part);
+    if (world.rank() < ranks) {
+      const comm::Comm comm(part);
+      for (const Decomposition kind : {Decomposition::slab, Decomposition::pencil, Decomposition::metis}) {
+        if (ranks == 1 && kind != Decomposition::slab) continue;
+        SCOPED_TRACE(::testing::Message() << ranks << " ranks, decomposition " << static_cast<int>(kind));
+        in.parallel.decomposition = kind;
+        const output::PackRows rows = pack_on(comm, in, folder);
+        comm.barrier();
+        if (!reference) {
+          EXPECT_TRUE(anything_touches(rows));
+          reference = rows;
+        } else {
+          expect_same(*reference, rows);
+        }
+      }
+    }
+    MPI_Comm_free(&part);
+    // Ranks outside the first group learn the reference from the file when they first take part.
+    world.barrier();
+    if (!reference) reference = output::read_pack(folder + "/same_bits.hdf");
+    world.barrier();
+  }
+  if (world.rank() == 0) std::filesystem::remove_all(folder);
+  world.barrier();
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,
+                         ::testing::Combine(::testing::Values(2, 3), ::testing::Bool(), ::testing::Bool(),
+                                            ::testing::Bool()));
+
+}  // namespace
+}  // namespace packmpi::run
