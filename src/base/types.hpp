@@ -5,9 +5,9 @@
 
 namespace packmpi {
 
-using LocalIndex = std::int32_t;  ///< a slot on this rank, [0, owned + ghosts)
-using GlobalId = std::int64_t;    ///< a particle's name for life: 0 .. N-1 in order of insertion
-using Rank = int;                 ///< as MPI has it
+using LocalIndex = std::int32_t;     ///< a slot on this rank, [0, owned + ghosts)
+using GlobalId = std::int64_t;       ///< a particle's name for life: 0 .. N-1 in order of insertion
+using Rank = int;                    ///< as MPI has it
 using Vec3 = std::array<double, 3>;  ///< x, y, z; in 2D z = 0 and y is vertical
 
 }  // namespace packmpi

@@ -1,7 +1,8 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <H5Cpp.h>
 #include <hdf5.h>
 #include <petscviewerhdf5.h>
+
+#include <CLI/CLI.hpp>
 
 #include "scene/late.hpp"

@@ -1,8 +1,8 @@
+#include <Random123/philox.h>
 #include <metis.h>
 #include <petscdmda.h>
 
 #include <Eigen/Dense>
-#include <Random123/philox.h>
 
 #include "attic/box.hpp"
 #include "comm/door.hpp"
