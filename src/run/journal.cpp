@@ -1,13 +1,13 @@
 #include "run/journal.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "base/log.hpp"
+#include "base/terminal.hpp"
 #include "base/text.hpp"
 #include "observe/measure.hpp"
 
@@ -22,7 +22,7 @@ double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
 }  // namespace
 
 Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet)
-    : pile_(pile), steps_(pile.comm, steps_path), terminal_(isatty(1) != 0), quiet_(quiet) {}
+    : pile_(pile), steps_(pile.comm, steps_path), terminal_(stdout_is_terminal()), quiet_(quiet) {}
 
 void Journal::layer_inserted(const output::LayerRow& row) {
   log::debug(fmt::format("inserted {} particles in {} darts, solid fraction {:.4f} of the region from {:.6g} m up",
