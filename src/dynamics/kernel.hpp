@@ -1,12 +1,12 @@
 /// One explicit step of all owned particles, fused: contact forces in blocks of pairs, walls, integration in place.
 ///
-/// Forces are summed as 64-bit integers in units of the scene's force quantum, so the result does not depend on the order
-/// of pairs, the memory order, the skin, the last rebuild or the ranks.
-/// Compiled three times (baseline x86-64, v3, v4), the best is chosen when the program starts: same bits, IEEE operations
-/// only, no contraction.
+/// Forces are summed as 64-bit integers in units of the scene's force quantum, so the result does not depend on the
+/// order of pairs, the memory order, the skin, the last rebuild or the ranks. Compiled three times (baseline x86-64,
+/// v3, v4), the best is chosen when the program starts: same bits, IEEE operations only, no contraction.
 #pragma once
+#include <array>
+#include <bit>
 #include <cstdint>
-#include <span>
 
 #include "dynamics/law.hpp"
 #include "neighbor/lists.hpp"
@@ -23,39 +23,49 @@ namespace packmpi::dynamics {
 
 /// Everything a kernel reads and writes. Pointers are not owned.
 struct StepData {
-  double* records;                  ///< Store::records(); the owned are advanced in place, ghosts only read
+  double* records;  ///< Store::records(); the owned are advanced in place, ghosts only read
   LocalIndex owned;
-  const LocalIndex* first;          ///< pair list, see neighbor::PairList
+  const LocalIndex* first;  ///< pair list, see neighbor::PairList
   const LocalIndex* second;
   std::int64_t pairs;
   const LocalIndex* wall_particle;  ///< wall list, see neighbor::WallList
   const neighbor::Wall* wall;
   std::int64_t walls;
-  std::int64_t* ring;               ///< accumulators of slot i at ring[(i & ring_mask) * accumulators_of(layout)];
-                                    ///< zero (or prefilled, near field) on entry, zero on return. 64-byte aligned.
-  std::int64_t ring_mask;           ///< 2^k - 1 >= window; or >= owned - 1 when prefilled. One more slot follows it: a dump for ghosts.
+  std::int64_t* ring;  ///< accumulators of slot i at ring[(i & ring_mask) * accumulators_of(layout)];
+                       ///< zero (or prefilled, near field) on entry, zero on return. 64-byte aligned.
+  /// Slots - 1; slots a power of two >= window (see ring_slots), or >= owned when prefilled. One more slot follows
+  /// them: a dump for what ghosts would get.
+  std::int64_t ring_mask;
   Law law;
-  double force_quantum;             ///< [N], power of two
-  double time_step;                 ///< [s]
-  Vec3 gravity;                     ///< [m/s2]
-  double drag;                      ///< [N s/m]
-  Vec3 fluid_velocity;              ///< [m/s]
-  Vec3 size;                        ///< [m] container; the period on periodic axes
+  double force_quantum;  ///< [N], power of two
+  double time_step;      ///< [s]
+  Vec3 gravity;          ///< [m/s2]
+  double drag;           ///< [N s/m]
+  Vec3 fluid_velocity;   ///< [m/s]
+  Vec3 size;             ///< [m] container; the period on periodic axes
   std::array<bool, 2> periodic;
 };
 
+/// Slots of a ring for a pair list's window. The room beyond it lets a block of pairs run on while the slots of its
+/// first particles are still in use; with less the kernel is right but cuts its blocks short.
+[[nodiscard]] constexpr std::int64_t ring_slots(LocalIndex window) {
+  return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(window) + 128));
+}
+
 /// What a step tells.
 struct StepReport {
-  double max_speed = 0.0;    ///< [m/s] an upper bound (within sqrt(3)) of the largest speed after the step; NaN or inf if any is
-  double max_force = 0.0;    ///< [N] the largest normal force of a contact
-  bool in_range = true;      ///< false: a force left the range of the integer sums, the state is garbage
+  /// [m/s] an upper bound (within sqrt(3)) of the largest speed after the step; NaN or inf if any state is not finite
+  double max_speed = 0.0;
+  double max_force = 0.0;  ///< [N] the largest normal force of a contact; NaN if one is not finite
+  bool in_range = true;    ///< false: a force left the range of the integer sums, the state is garbage
 };
 
 /// A kernel for the features; the pointer stays valid for ever. Local.
 using Kernel = StepReport (*)(const StepData&);
 [[nodiscard]] Kernel select_kernel(const scene::Features& features);
 
-/// The instruction set chosen: "x86-64", "x86-64-v3" or "x86-64-v4". PACKMPI_ARCH=... in the environment lowers it (tests).
+/// The instruction set chosen: "x86-64", "x86-64-v3" or "x86-64-v4". PACKMPI_ARCH=... in the environment lowers it
+/// (tests).
 [[nodiscard]] const char* kernel_architecture();
 
 /// Largest force the integer sums take from one contact, in quanta: 2^50. (The conversion adds 1.5 * 2^52.)

@@ -1,0 +1,100 @@
+// The step kernels of one dimension for one instruction set. The build compiles this file once for each, with
+//   PACKMPI_KERNEL     the namespace of all code in it, for example x86_64_v3_3d
+//   PACKMPI_DIMENSION  2 or 3
+// Nothing with external linkage is called, so the linker cannot mix the builds.
+#include "dynamics/kernel_motion.hpp"
+
+namespace packmpi::dynamics::PACKMPI_KERNEL {
+
+template <Features F>
+struct Stepper {
+  const StepData& data;
+  Constants pair = constants_of(data.law, data.law.pair);
+  Constants wall = constants_of(data.law, data.law.wall);
+  Periods periods = periods_of(data);
+  Motion motion = motion_of<F>(data);
+  double scale = 1.0 / data.force_quantum;
+  Tally tally{};
+  Block block;  // 30 KB, on the stack
+  LocalIndex done = 0;
+  std::int64_t walls_done = 0;
+
+  explicit PACKMPI_INLINE Stepper(const StepData& step_data) : data(step_data) {}  // leaves the block as it is
+
+  /// Walls and integration of all particles below `limit`, a ring's length at a time: beyond it walls would meet slots
+  /// in use.
+  PACKMPI_INLINE void finish(LocalIndex limit) {
+    const auto ring = static_cast<LocalIndex>(data.ring_mask + 1);
+    while (done < limit) {
+      const LocalIndex to = limit - done > ring ? done + ring : limit;
+      std::int64_t end = walls_done;
+      while (end < data.walls && data.wall_particle[end] < to) ++end;
+      add_walls<F>(data, wall, scale, block, tally, walls_done, end);
+      walls_done = end;
+      integrate<F>(data, motion, tally, done, to);
+      done = to;
+    }
+  }
+
+  PACKMPI_INLINE void run() {
+    for (std::int64_t p = 0;; p += block.count) {
+      finish(p < data.pairs ? data.first[p] : data.owned);
+      if (p >= data.pairs) break;
+      take(data, p, done, block);
+      pack<F>(data.records, block);
+      resolve_pairs<F>(block, pair, periods, scale);
+      tally.pair_force = largest(block.strength, block.filled, tally.pair_force);
+      scatter<F>(data.ring, block);
+    }
+    std::int64_t* dump = data.ring + (data.ring_mask + 1) * Memory<F>::accumulators;
+    for (int a = 0; a < Memory<F>::accumulators; ++a) dump[a] = 0;
+  }
+
+  [[nodiscard]] PACKMPI_INLINE StepReport report() const {
+    const Lanes v = tally.speed;
+    const bool planar_spin = F.dimension == 2;  // lane 2 is then not a velocity
+    const bool broken = (tally.broken[0] | tally.broken[1] | tally.broken[2]) != 0;
+    const double square = v[0] * v[0] + v[1] * v[1] + (planar_spin ? 0.0 : v[2] * v[2]);
+    const double limit = max_quanta * data.force_quantum;
+    const bool in_range = tally.pair_force * (1.0 + pair.friction) <= limit &&
+                          tally.wall_force * (1.0 + wall.friction) <= limit;  // false for NaN
+    const double both = tally.pair_force + tally.wall_force;
+    const double most = tally.pair_force < tally.wall_force ? tally.wall_force : tally.pair_force;
+    const double force = both - both == 0.0 ? most : __builtin_nan("");
+    return {broken ? __builtin_nan("") : __builtin_sqrt(square), force, in_range};
+  }
+};
+
+template <Features F>
+static StepReport step(const StepData& data) {
+  Stepper<F> stepper(data);
+  stepper.run();
+  return stepper.report();
+}
+
+/// The kernels there are, by number: which moving parts (0 none, 1 friction, 2 friction and rotation), then three
+/// switches.
+constexpr Features features_of(int number) {
+  Features f;
+  f.dimension = PACKMPI_DIMENSION;
+  f.rotation = number / 8 == 2;
+  f.friction = number / 8 >= 1;
+  f.drag = (number & 1) != 0;
+  f.graded = (number & 2) != 0;
+  f.periodic = (number & 4) != 0;
+  f.near_field = false;
+  return f;
+}
+
+template <int... Number>
+struct Table {
+  static constexpr Kernel kernels[] = {&step<features_of(Number)>...};
+};
+using Kernels = Table<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23>;
+
+Kernel kernel(const Features& f) {
+  const int moving = f.rotation ? 2 : (f.friction ? 1 : 0);  // spin without friction is rare: friction zero does it
+  return Kernels::kernels[moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0)];
+}
+
+}  // namespace packmpi::dynamics::PACKMPI_KERNEL

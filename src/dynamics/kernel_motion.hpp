@@ -1,0 +1,148 @@
+/// Stages 4 and 5: walls and integration of the particles whose pairs are all done.
+#pragma once
+#include "dynamics/kernel_resolve.hpp"
+
+namespace packmpi::dynamics::PACKMPI_KERNEL {
+
+/// Where a wall is: n (towards the wall) is sign on one axis; distance of a centre = offset - sign * x[axis].
+struct Plane {
+  int axis;
+  double sign, offset;
+};
+
+template <Features F>
+PACKMPI_INLINE Plane plane_of(const StepData& data, neighbor::Wall wall) {
+  const int number = static_cast<int>(wall);
+  if (number == 0) return {F.dimension - 1, -1.0, 0.0};
+  const int axis = (number - 1) / 2;
+  const bool high = number % 2 == 0;
+  return {axis, high ? 1.0 : -1.0, high ? data.size[static_cast<unsigned>(axis)] : 0.0};
+}
+
+/// Fill entry p of the block for one particle at one wall: the wall is a second end at rest.
+template <Features F>
+PACKMPI_INLINE void put_wall(const StepData& data, Block& b, int p, LocalIndex particle, neighbor::Wall wall) {
+  constexpr particles::Layout layout = F.layout();
+  const double* record = data.records + std::int64_t{particle} * layout.stride;
+  const Plane plane = plane_of<F>(data, wall);
+  for (int a = 0; a < F.dimension; ++a) {
+    b.in[a][p] = a == plane.axis ? plane.sign : 0.0;
+    b.in[layout.velocity + a][p] = -record[layout.velocity + a];
+  }
+  b.in[wall_distance][p] = plane.offset - plane.sign * record[plane.axis];
+  b.in[layout.radius][p] = record[layout.radius];
+  b.in[layout.curvature][p] = record[layout.curvature];
+  for (int a = 0; a < layout.spin_components(); ++a) b.in[layout.spin + a][p] = record[layout.spin + a];
+}
+
+template <Features F>
+PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block& b, Tally& tally,
+                              std::int64_t from, std::int64_t to) {
+  constexpr int accumulators = Memory<F>::accumulators;
+  constexpr int forces = F.dimension == 2 && F.rotation ? 3 : F.dimension;
+  while (from < to) {
+    const int count = to - from < Block::size ? static_cast<int>(to - from) : Block::size;
+    b.filled = (count + 7) & ~7;
+    for (int p = 0; p < b.filled; ++p) {
+      const std::int64_t entry = from + (p < count ? p : count - 1);
+      put_wall<F>(data, b, p, data.wall_particle[entry], data.wall[entry]);
+    }
+    resolve_walls<F>(b, c, scale);
+    tally.wall_force = largest(b.strength, b.filled, tally.wall_force);
+    for (int p = 0; p < count; ++p) {
+      std::int64_t* sum = data.ring + (data.wall_particle[from + p] & data.ring_mask) * accumulators;
+      for (int a = 0; a < forces; ++a) sum[a] += b.out[a][p];
+      if constexpr (accumulators == 8) {
+        for (int a = 4; a < 7; ++a) sum[a] += b.out[a][p];
+      }
+    }
+    from += count;
+  }
+}
+
+/// What integration needs, by lane of the velocity vector (3D: v and the curvature; 2D: v, spin and padding).
+struct Motion {
+  Lanes inverse_mass;       // graded: to be multiplied by the particle's 1/m
+  Lanes spin_inverse_mass;  // 3D
+  Lanes gravity, drag, fluid_velocity;
+  Lanes step, spin_step;       // dt in the lanes that move, else 0
+  Lanes lower, upper, period;  // periodic wrap of the position vector
+  Lanes quantum;
+  double mass_factor;
+};
+
+template <Features F>
+PACKMPI_INLINE Motion motion_of(const StepData& data) {
+  const bool deep = F.dimension == 3;
+  const double mass = F.graded ? 1.0 : 1.0 / data.law.wall.reduced_mass;
+  const double spin = 2.5 * mass;  // j = 2/5 m r^2
+  const double dt = data.time_step;
+  const double inf = __builtin_inf();
+  const bool px = data.periodic[0];
+  const bool py = deep && data.periodic[1];
+  Motion m{};
+  m.inverse_mass = Lanes{mass, mass, deep ? mass : spin, 0.0};
+  m.spin_inverse_mass = Lanes{spin, spin, spin, 0.0};
+  m.gravity = Lanes{data.gravity[0], data.gravity[1], deep ? data.gravity[2] : 0.0, 0.0};
+  m.drag = Lanes{data.drag, data.drag, deep ? data.drag : 0.0, 0.0};
+  m.fluid_velocity = Lanes{data.fluid_velocity[0], data.fluid_velocity[1], deep ? data.fluid_velocity[2] : 0.0, 0.0};
+  m.step = Lanes{dt, dt, deep ? dt : 0.0, 0.0};
+  m.spin_step = Lanes{dt, dt, dt, 0.0};
+  m.lower = Lanes{px ? 0.0 : -inf, py ? 0.0 : -inf, -inf, -inf};
+  m.upper = Lanes{px ? data.size[0] : inf, py ? data.size[1] : inf, inf, inf};
+  m.period = Lanes{px ? data.size[0] : 0.0, py ? data.size[1] : 0.0, 0.0, 0.0};
+  m.quantum = spread(data.force_quantum);
+  m.mass_factor = data.law.mass_factor;
+  return m;
+}
+
+/// Advance one particle and clear its accumulators. Lanes that hold no state are written back as they were read.
+template <Features F>
+PACKMPI_INLINE void advance(double* record, std::int64_t* sum, const Motion& m, Tally& tally) {
+  constexpr particles::Layout layout = F.layout();
+  constexpr bool half = layout.stride == 6;  // 2D without spin: the next record follows after two lanes of velocity
+  Lanes x = load(record);
+  Lanes v = half ? load_half(record + 4) : load(record + 4);
+  double mass = 1.0;
+  if constexpr (F.graded) {
+    const double k = F.dimension == 3 ? v[3] : x[3];
+    mass = m.mass_factor * k * k * k;
+  }
+  Lanes force = __builtin_convertvector(reinterpret_cast<IntLanes>(load_bits(sum)), Lanes) * m.quantum;
+  store_bits(sum, BitLanes{});
+  if constexpr (F.drag) force = force - m.drag * (v - m.fluid_velocity);
+  v = v + m.spin_step * (force * (m.inverse_mass * mass) + m.gravity);
+  const Lanes moved = x + m.step * v;
+  x = __builtin_shufflevector(moved, x, 0, 1, F.dimension == 3 ? 2 : 6, 7);
+  if constexpr (F.periodic) {
+    x = x < m.lower ? x + m.period : x;
+    x = x >= m.upper ? x - m.period : x;
+  }
+  store(record, x);
+  if constexpr (half) store_half(record + 4, v);
+  if constexpr (!half) store(record + 4, v);
+  const Lanes speed = magnitude(v);
+  tally.speed = speed > tally.speed ? speed : tally.speed;
+  tally.broken |= as_bits(x - x) | as_bits(v - v);
+  if constexpr (F.dimension == 3 && F.rotation) {
+    Lanes s = load(record + 8);
+    const Lanes moment = __builtin_convertvector(reinterpret_cast<IntLanes>(load_bits(sum + 4)), Lanes) * m.quantum;
+    store_bits(sum + 4, BitLanes{});
+    s = s + m.spin_step * (moment * (m.spin_inverse_mass * mass));
+    store(record + 8, s);
+    tally.broken |= as_bits(s - s);
+  }
+}
+
+/// All particles of [from, to): nobody needs their old state any more.
+template <Features F>
+PACKMPI_INLINE void integrate(const StepData& data, const Motion& m, Tally& tally, LocalIndex from, LocalIndex to) {
+  constexpr int accumulators = Memory<F>::accumulators;
+  Tally mine = tally;
+  for (std::int64_t i = from; i < to; ++i) {
+    advance<F>(data.records + i * Memory<F>::stride, data.ring + (i & data.ring_mask) * accumulators, m, mine);
+  }
+  tally = mine;
+}
+
+}  // namespace packmpi::dynamics::PACKMPI_KERNEL

@@ -1,0 +1,73 @@
+#include "dynamics/near_field.hpp"
+
+#include <cmath>
+
+#include "dynamics/kernel.hpp"
+#include "geometry/box.hpp"
+
+namespace packmpi::dynamics {
+namespace {
+
+/// x^n by squaring.
+double whole_power(double x, std::int64_t n) {
+  double result = 1.0;
+  for (; n > 0; n /= 2) {
+    if (n % 2 == 1) result *= x;
+    x *= x;
+  }
+  return result;
+}
+
+/// From first to second, the nearest image; z = 0 in 2D.
+Vec3 separation(const geometry::Box& box, const Vec3& first, const Vec3& second) {
+  Vec3 d{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    d[a] = second[a] - first[a];
+    const bool periodic = a < static_cast<std::size_t>(box.lateral_axes()) && box.periodic[a];
+    if (periodic) d[a] = geometry::shortest(d[a], box.size[a]);
+  }
+  return d;
+}
+
+}  // namespace
+
+double inverse_power(double d, double exponent) {
+  constexpr double most = 512.0;  // beyond, the value is 0 or infinite for any length in metres
+  const double halves = 2.0 * std::fabs(exponent);
+  if (halves != std::floor(halves) || halves > most) return std::pow(d, -exponent);
+  const auto count = static_cast<std::int64_t>(halves);
+  double power = whole_power(d, count / 2);
+  if (count % 2 == 1) power *= std::sqrt(d);
+  return exponent < 0.0 ? power : 1.0 / power;
+}
+
+bool add_near_field(const scene::Scene& scene, const particles::Store& store, const neighbor::PairList& pairs,
+                    std::int64_t* accumulators) {
+  const input::NearField& law = *scene.in.near_field;
+  const int each = accumulators_of(store.layout());
+  const double limit = max_quanta * scene.force_quantum;
+  bool in_range = true;
+  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
+    const LocalIndex i = pairs.first[p];
+    const LocalIndex j = pairs.second[p];
+    const Vec3 x = separation(scene.box, store.position(i), store.position(j));
+    const double distance = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    if (distance == 0.0 || distance >= law.cutoff) continue;
+    const double attraction = law.alpha1 * inverse_power(distance, law.beta1);
+    const double repulsion = law.alpha2 * inverse_power(distance, law.beta2);
+    const double force = attraction - repulsion;
+    if (!(std::fabs(force) <= limit)) {  // NaN too
+      in_range = false;
+      continue;
+    }
+    for (int a = 0; a < store.layout().dimension; ++a) {
+      const double component = force * (x[static_cast<std::size_t>(a)] / distance);
+      const auto quanta = static_cast<std::int64_t>(std::nearbyint(component / scene.force_quantum));
+      accumulators[std::int64_t{i} * each + a] += quanta;
+      if (j < store.owned()) accumulators[std::int64_t{j} * each + a] -= quanta;
+    }
+  }
+  return in_range;
+}
+
+}  // namespace packmpi::dynamics

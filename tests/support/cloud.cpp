@@ -1,0 +1,168 @@
+#include "support/cloud.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "geometry/box.hpp"
+
+namespace packmpi::support {
+namespace {
+
+constexpr double radius = 0.02;  // [m] of equal particles
+
+dynamics::Law random_law(Dice& dice) {
+  dynamics::Law law{};
+  const double modulus = 1e6;
+  law.mass_factor = 3.0 / (4.0 * 3.141592653589793 * 1000.0);
+  const double mass = 1.0 / (law.mass_factor / (radius * radius * radius));
+  law.pair = {4.0 / 3.0 * modulus, 2.0 * 0.1 * std::sqrt(2.0 * modulus), dice(0.1, 0.6), 0.5 * radius, 0.5 * mass};
+  law.wall = {8.0 / 3.0 * modulus, 2.0 * 0.1 * std::sqrt(4.0 * modulus), dice(0.1, 0.6), radius, mass};
+  law.spin_slip = dice() < 0.7 ? 1.0 : 0.0;
+  law.slip_rate = dice() < 0.7 ? 1e4 : 1e150;
+  law.slip_mass = dice() < 0.7 ? 2.0 / 7.0 : 1.0;
+  law.lowest_force = dice() < 0.7 ? 0.0 : -HUGE_VAL;
+  return law;
+}
+
+}  // namespace
+
+Cloud::Cloud(const scene::Features& f, const CloudPlan& p) : features(f), plan(p) {
+  Dice dice(plan.seed);
+  law = random_law(dice);
+  drag = features.drag ? 0.05 : 0.0;
+  if (features.periodic) periodic = {true, f.dimension == 3 && dice() < 0.5};
+  if (features.periodic && f.dimension == 3 && dice() < 0.3) periodic = {false, true};
+  const double count = plan.owned + plan.ghosts;  // an edge that packs them tightly
+  const double edge = 1.7 * radius * (f.dimension == 3 ? std::cbrt(count) : std::sqrt(count)) + 4.0 * radius;
+  size = {edge, f.dimension == 3 ? edge : 0.0, 0.0};
+  fill(dice);
+  list(dice);
+  make_ring(dice);
+}
+
+void Cloud::fill(Dice& dice) {
+  const particles::Layout layout = features.layout();
+  const LocalIndex total = plan.owned + plan.ghosts;
+  const double poison = std::numeric_limits<double>::quiet_NaN();  // in every place that holds no state
+  records.assign(static_cast<std::size_t>(total * layout.stride + 8), poison);
+  for (LocalIndex i = 0; i < total; ++i) {
+    double* p = records.data() + static_cast<std::ptrdiff_t>(i) * layout.stride;
+    const double r = features.graded ? radius * dice(0.5, 1.5) : radius;
+    for (int a = 0; a < layout.dimension; ++a) {
+      const bool wraps = a < layout.dimension - 1 && periodic[static_cast<std::size_t>(a)];
+      p[a] = wraps ? dice(0.0, size[0]) : dice(-0.3 * radius, size[0] + 0.3 * radius);  // some beyond the walls
+      p[layout.velocity + a] = dice(-1.0, 1.0);
+    }
+    p[layout.radius] = r;
+    p[layout.curvature] = 1.0 / r;
+    for (int a = 0; a < layout.spin_components(); ++a) p[layout.spin + a] = dice(-1.0, 1.0);
+    if (dice() < 0.1) std::fill_n(p + layout.velocity, layout.dimension, 0.0);
+    ids.push_back(i);
+  }
+}
+
+void Cloud::list(Dice& dice) {
+  const int dimension = features.dimension;
+  const LocalIndex total = plan.owned + plan.ghosts;
+  const double margin = plan.skin * radius;
+  for (LocalIndex i = 0; i < plan.owned; ++i) {
+    const double* a = record(i);
+    const double r = a[features.layout().radius];
+    const auto begin = static_cast<std::ptrdiff_t>(pairs.second.size());
+    for (LocalIndex j = i + 1; j < total; ++j) {
+      if (j < plan.owned && j - i >= plan.window) continue;
+      double square = 0.0;
+      for (int axis = 0; axis < dimension; ++axis) {
+        const bool wraps = axis < dimension - 1 && periodic[static_cast<std::size_t>(axis)];
+        const double d = record(j)[axis] - a[axis];
+        square += wraps ? std::pow(geometry::shortest(d, size[0]), 2) : d * d;
+      }
+      if (std::sqrt(square) > r + record(j)[features.layout().radius] + margin) continue;
+      pairs.first.push_back(i);
+      pairs.second.push_back(j);
+      if (j < plan.owned) pairs.window = std::max(pairs.window, j - i + 1);
+    }
+    for (auto end = pairs.second.end(); end - pairs.second.begin() > begin + 1; --end) {  // any order will do
+      const auto count = static_cast<std::uint64_t>(end - pairs.second.begin() - begin);
+      std::iter_swap(end - 1, pairs.second.begin() + begin + static_cast<std::ptrdiff_t>(dice.below(count)));
+    }
+    const auto near = [&](double distance, neighbor::Wall wall) {
+      if (distance > r + margin) return;
+      walls.particle.push_back(i);
+      walls.wall.push_back(wall);
+    };
+    near(a[dimension - 1], neighbor::Wall::floor);
+    if (!periodic[0]) near(a[0], neighbor::Wall::x_low), near(size[0] - a[0], neighbor::Wall::x_high);
+    if (dimension == 3 && !periodic[1]) near(a[1], neighbor::Wall::y_low), near(size[1] - a[1], neighbor::Wall::y_high);
+  }
+}
+
+void Cloud::make_ring(Dice& dice) {
+  const auto window = static_cast<std::uint64_t>(static_cast<double>(pairs.window) * plan.ring_room);
+  const std::uint64_t slots =
+      std::bit_ceil(plan.near_field ? std::max(window, static_cast<std::uint64_t>(plan.owned)) : window);
+  const auto each = static_cast<std::uint64_t>(dynamics::accumulators_of(features.layout()));
+  ring_mask = static_cast<std::int64_t>(slots) - 1;
+  ring.assign((slots + 1) * each / 8 + 1, {});
+  if (!plan.near_field) return;
+  std::int64_t* sums = ring.front().sums;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(plan.owned); ++i) {
+    for (std::uint64_t a = 0; a < static_cast<std::uint64_t>(features.dimension); ++a) {
+      sums[i * each + a] = static_cast<std::int64_t>(dice(-1.0, 1.0) * 0x1p40);
+    }
+  }
+}
+
+bool Cloud::ring_is_clear() const {
+  return std::all_of(ring.begin(), ring.end(), [](const Line& line) {
+    return std::all_of(std::begin(line.sums), std::end(line.sums), [](std::int64_t sum) { return sum == 0; });
+  });
+}
+
+Cloud Cloud::renumbered(std::uint64_t seed) const {
+  Cloud other = *this;
+  Dice dice(seed);
+  std::vector<std::size_t> order(ids.size());  // slot -> old slot
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto shuffle = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = end - begin; n > 1; --n) std::swap(order[begin + n - 1], order[begin + dice.below(n)]);
+  };
+  shuffle(0, static_cast<std::size_t>(plan.owned));
+  shuffle(static_cast<std::size_t>(plan.owned), order.size());
+  const auto stride = static_cast<std::size_t>(features.layout().stride);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::copy_n(records.data() + order[i] * stride, stride, other.records.data() + i * stride);
+    other.ids[i] = ids[order[i]];
+  }
+  other.pairs = {};
+  other.walls = {};
+  other.list(dice);
+  other.make_ring(dice);
+  return other;
+}
+
+dynamics::StepData Cloud::data() {
+  return {.records = records.data(),
+          .owned = plan.owned,
+          .first = pairs.first.data(),
+          .second = pairs.second.data(),
+          .pairs = static_cast<std::int64_t>(pairs.first.size()),
+          .wall_particle = walls.particle.data(),
+          .wall = walls.wall.data(),
+          .walls = static_cast<std::int64_t>(walls.particle.size()),
+          .ring = ring.front().sums,
+          .ring_mask = ring_mask,
+          .law = law,
+          .force_quantum = 0x1p-36,
+          .time_step = 1e-4,
+          .gravity = features.dimension == 3 ? Vec3{0.0, 0.0, -2.0} : Vec3{0.0, -2.0, 0.0},
+          .drag = drag,
+          .fluid_velocity = {0.1, -0.2, features.dimension == 3 ? 0.3 : 0.0},
+          .size = size,
+          .periodic = periodic};
+}
+
+}  // namespace packmpi::support
