@@ -1,0 +1,225 @@
+#!/usr/bin/python3
+"""A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the height asked.
+
+usage: scripts/render.py PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed] [--size pixels] [--no-chains]
+
+3D is drawn by VTK on a virtual screen, 2D by matplotlib; scripts/setup.sh --render installs both.
+A 2D pack with /contacts (output.contacts = true) gets its force chains, lines as thick as the normal forces.
+"""
+import argparse
+import os
+import sys
+
+NEEDS = "install it with: scripts/setup.sh --render"
+INK = "#222222"
+ACCENT = "#d1495b"  # the height asked
+BACKGROUND = "#ffffff"
+
+
+def fail(words):
+    sys.exit(f"render: {words}")
+
+
+try:
+    import h5py
+    import matplotlib
+    import numpy as np
+except ImportError as error:
+    fail(f"the Python package {error.name} is missing for {sys.executable}; {NEEDS}")
+matplotlib.use("Agg")
+from matplotlib import colors, pyplot as plt  # noqa: E402  (after the choice of the backend)
+from matplotlib.cm import ScalarMappable  # noqa: E402
+from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
+
+
+class Pack:
+    """The parts of a pack file that a picture needs; doc/file_format.md."""
+
+    def __init__(self, path):
+        try:
+            with h5py.File(path, "r") as file:
+                if file.attrs.get("format") not in (b"packmpi-pack", "packmpi-pack"):
+                    fail(f"{path} is not a pack of packmpi (root attribute 'format')")
+                self.read(file)
+        except OSError as error:
+            fail(f"cannot read {path}: {error}")
+        except KeyError as error:
+            fail(f"{path} is incomplete: {error}")
+
+    def read(self, file):
+        particles, asked = file["particles"], file["summary"].attrs
+        self.position = particles["position"][:]
+        self.radius = particles["radius"][:]
+        self.layer = particles["layer"][:]
+        self.contacts = particles["contacts"][:]
+        self.speed = np.linalg.norm(particles["velocity"][:], axis=1)
+        self.size = np.array(asked["size"], dtype=float)  # lateral extents, then the height asked [m]
+        self.dimension = int(asked["dimension"])
+        self.phi, self.phi_bulk = float(asked["phi"]), float(asked["phi_bulk"])
+        self.pairs = file["contacts/pair"][:] if "contacts" in file else None
+        self.forces = file["contacts/force"][:] if "contacts" in file else None
+
+    @property
+    def count(self):
+        return len(self.radius)
+
+    def top(self):
+        """Highest particle top, at least the height asked [m]."""
+        vertical = self.dimension - 1
+        highest = (self.position[:, vertical] + self.radius).max() if self.count else 0.0
+        return max(highest, self.size[vertical])
+
+
+def softened(name):
+    """A colour map without its ends, on which shading and highlights are hard to see."""
+    return colors.LinearSegmentedColormap.from_list(name, plt.get_cmap(name)(np.linspace(0.12, 0.92, 256)))
+
+
+class Colouring:
+    """Colours of the particles by one property, and the bar that explains them."""
+
+    def __init__(self, pack, what):
+        equal = pack.count == 0 or np.ptp(pack.radius) == 0.0
+        self.what = what or ("layer" if equal else "radius")
+        self.values, self.label, cmap = {
+            "radius": (pack.radius * 1000.0, "radius [mm]", "viridis"),
+            "layer": (pack.layer + 1, "layer of insertion", "viridis"),
+            "contacts": (pack.contacts, "touching particles", "plasma"),
+            "speed": (np.maximum(pack.speed, 1e-12), "speed [m/s]", "magma"),
+        }[self.what]
+        self.cmap = softened(cmap)
+        self.ticks = None
+        self.norm = self.scale()
+
+    def scale(self):
+        if len(self.values) == 0:
+            return colors.Normalize(0.0, 1.0)
+        low, high = float(self.values.min()), float(self.values.max())
+        if self.what in ("layer", "contacts"):
+            return self.steps(int(low), int(high))
+        if self.what == "speed":  # over decades; the slowest hundredth shares one colour
+            low = max(float(np.percentile(self.values, 1.0)), high * 1e-8)
+            return colors.LogNorm(low, max(high, 1.001 * low))
+        if high == low:
+            low, high, self.ticks = 0.9 * low, 1.1 * low, [low]
+        return colors.Normalize(low, high)
+
+    def steps(self, low, high):
+        """One colour for each whole number."""
+        count = high - low + 1
+        self.cmap = colors.ListedColormap(self.cmap(np.linspace(0.0, 1.0, count)))
+        self.ticks = list(range(low, high + 1, max(1, count // 12)))
+        return colors.BoundaryNorm(np.arange(low, high + 2) - 0.5, count)
+
+    def fade(self):
+        """Paler, so that lines drawn over the particles stand out."""
+        pale = 0.45 * self.cmap(np.linspace(0.0, 1.0, self.cmap.N)) + 0.55
+        self.cmap = colors.ListedColormap(pale)
+
+    def rgba(self):
+        return self.cmap(self.norm(self.values))
+
+    def bar(self, figure, axes):
+        bar = figure.colorbar(ScalarMappable(self.norm, self.cmap), cax=axes, ticks=self.ticks)
+        if self.ticks is not None:
+            bar.ax.minorticks_off()
+        bar.outline.set_linewidth(0.6)
+        bar.set_label(self.label)
+        return bar
+
+
+def caption(pack):
+    noun = "spheres" if pack.dimension == 3 else "discs"
+    size = " x ".join(f"{length:g}" for length in pack.size)
+    return (f"{pack.count:,} {noun} in {size} m,  "
+            rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}")
+
+
+def draw_3d(pack, colouring, path, pixels):
+    import render_3d  # needs matplotlib and numpy, checked above
+    image = render_3d.image_3d(pack, colouring.rgba(), pixels)
+    height, width = image.shape[:2]
+    dpi, strip, head = 100, 110, 34  # pixels for the colour bar at the right and the caption above
+    figure = plt.figure(figsize=((width + strip) / dpi, (height + head) / dpi), dpi=dpi)
+    across, up = width + strip, height + head
+    axes = figure.add_axes([0.0, 0.0, width / across, height / up])
+    axes.imshow(image, interpolation="none")
+    axes.axis("off")
+    colouring.bar(figure, figure.add_axes([(width + 22) / across, 0.14, 16 / across, 0.66]))
+    figure.text(12 / across, 1.0 - 10 / up, caption(pack), va="top", fontsize=11, color=INK)
+    figure.text(12 / across, 8 / up, "red: height asked", fontsize=9, color=ACCENT)
+    figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
+
+
+def chain_lines(pack, axes, points):
+    """Lines between touching discs, as thick as the normal force."""
+    first, second = pack.position[pack.pairs[:, 0], :2], pack.position[pack.pairs[:, 1], :2]
+    normal = second - first
+    near = np.abs(normal[:, 0]) < 0.5 * pack.size[0]  # not those across a periodic side
+    length = np.linalg.norm(normal, axis=1)
+    force = np.abs(np.einsum("ij,ij->i", pack.forces[:, :2], normal)) / np.maximum(length, 1e-300)
+    typical = force[near].mean() if near.any() else 1.0
+    width = points * np.minimum(0.9 * force[near] / max(typical, 1e-300), 5.0)
+    lines = np.stack([first[near], second[near]], axis=1)
+    axes.add_collection(LineCollection(lines, linewidths=width, colors="#101010", capstyle="round", zorder=3))
+    return typical
+
+
+def draw_2d(pack, colouring, path, pixels, chains):
+    width, asked = pack.size
+    top = pack.top()
+    dpi, strip, rim = 100, 1.15, 0.30  # inches for the colour bar and around the picture
+    inches = pixels / dpi - strip - rim
+    high = inches * top / width
+    figure = plt.figure(figsize=(pixels / dpi, high + 2.2 * rim), dpi=dpi)
+    across, up = pixels / dpi, high + 2.2 * rim
+    axes = figure.add_axes([rim / across, rim / up, inches / across, high / up])
+    diameter = 2.0 * pack.radius
+    show = chains and pack.pairs is not None and len(pack.pairs) > 0
+    if show:
+        colouring.fade()
+    points = 72.0 * inches * diameter.mean() / width if pack.count else 1.0  # a mean diameter in points
+    axes.add_collection(EllipseCollection(
+        diameter, diameter, np.zeros(pack.count), units="xy", facecolors=colouring.rgba(), edgecolors=INK,
+        linewidths=min(0.6, 0.04 * points), offsets=pack.position[:, :2], transOffset=axes.transData, zorder=2))
+    note = "red: height asked"
+    if show:
+        note += f";  lines: contact forces, mean {chain_lines(pack, axes, 0.1 * points):.2g} N"
+    axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)
+    axes.plot([0, width], [asked, asked], color=ACCENT, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
+    axes.set_xlim(0.0, width)
+    axes.set_ylim(0.0, top)
+    axes.axis("off")
+    bar = [1.0 - (strip - 0.22) / across, (rim + 0.08 * high) / up, 0.16 / across, 0.84 * high / up]
+    colouring.bar(figure, figure.add_axes(bar))
+    figure.text(rim / across, 1.0 - 0.1 / up, caption(pack), va="top", fontsize=11, color=INK)
+    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=ACCENT)
+    figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draw a pack (NAME.hdf) as a PNG picture.")
+    parser.add_argument("pack", help="pack file, NAME.hdf")
+    parser.add_argument("-o", "--output", help="picture to write (default: NAME.png beside the pack)")
+    parser.add_argument("--color", choices=["radius", "layer", "contacts", "speed"],
+                        help="what the colours show (default: radius, or layer if all radii are equal)")
+    parser.add_argument("--size", type=int, default=1000, help="width in pixels, about (default 1000)")
+    parser.add_argument("--no-chains", action="store_true", help="2D: leave out the force chains")
+    options = parser.parse_args()
+    if not 100 <= options.size <= 8000:
+        fail("--size must be between 100 and 8000")
+    path = options.output or os.path.splitext(options.pack)[0] + ".png"
+    pack = Pack(options.pack)
+    colouring = Colouring(pack, options.color)
+    try:
+        if pack.dimension == 3:
+            draw_3d(pack, colouring, path, options.size)
+        else:
+            draw_2d(pack, colouring, path, options.size, not options.no_chains)
+    except OSError as error:
+        fail(f"cannot write {path}: {error}")
+    print(f"{path}: {pack.count} particles by {colouring.what}")
+
+
+if __name__ == "__main__":
+    main()
