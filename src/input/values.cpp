@@ -167,9 +167,9 @@ void store_default(const Key& key, Input& in) {
   const std::string_view standard = key.standard.value();
   std::string text(standard);
   if (standard.starts_with('=')) text = written(*find_key(standard.substr(1)), in);
-  Node value = parse_value(text, "default");
+  const Node value = parse_value(text, "default");
   if (key.count == Count::one) return store(key, value, in);
-  store(key, Node{"default", List(entries(key, in), std::move(value))}, in);
+  store(key, Node{"default", List(entries(key, in), value)}, in);
 }
 
 std::string written(const Key& key, Input& in) {
