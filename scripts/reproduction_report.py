@@ -40,9 +40,6 @@ class Cell:
     def mean(self, key):
         return mean(self.all(key))
 
-    def sd(self, key):
-        return sd(self.all(key))
-
 
 def read(path):
     with open(path, newline="") as file:
@@ -57,6 +54,12 @@ def cells_of(rows, data):
 
 def with_sd(middle, spread):
     return f"{middle:.3f} ± {spread:.3f}"
+
+
+def of_sample(values, digits=3):
+    """Mean and standard deviation; the mean alone of a single value."""
+    spread = f" ± {sd(values):.{digits}f}" if len(values) > 1 else ""
+    return f"{mean(values):.{digits}f}{spread}"
 
 
 def criteria(cells):
@@ -96,9 +99,9 @@ def density_table(cells):
     for cell in cells:
         other = cell.independent
         rows.append([f"{cell.example} {TITLES[cell.example]}", cell.rotation, f"{len(cell.rows)}",
-                     with_sd(cell.mean("phi"), cell.sd("phi")), with_sd(mean(cell.paper), sd(cell.paper)),
+                     of_sample(cell.all("phi")), of_sample(cell.paper),
                      f"{with_sd(other['phi_mean'], other['phi_sd'])} ({other['seeds']:.0f})",
-                     with_sd(cell.mean("phi_bulk"), cell.sd("phi_bulk")), f"{other['phi_bulk_mean']:.3f}"])
+                     of_sample(cell.all("phi_bulk")), f"{other['phi_bulk_mean']:.3f}"])
     return table(heads, rows)
 
 
@@ -110,7 +113,7 @@ def state_table(cells):
         layers = sorted({row["layers"] for row in cell.rows})
         rows.append([cell.example, cell.rotation, f"{cell.mean('particles'):.0f}",
                      f"{layers[0]}" if len(layers) == 1 else f"{layers[0]} to {layers[-1]}",
-                     f"{cell.mean('height'):.4f}", f"{cell.mean('coordination'):.2f} ± {cell.sd('coordination'):.2f}",
+                     f"{cell.mean('height'):.4f}", of_sample(cell.all("coordination"), 2),
                      f"{cell.mean('mean_overlap'):.1e}", f"{cell.mean('creep'):.1e}", f"{cell.mean('rattlers'):.3f}",
                      f"{cell.mean('wall_seconds'):.1f}"])
     return table(heads, rows)
