@@ -144,7 +144,7 @@ void Ownership::collect() {
     }
   }
   std::ranges::sort(neighbors_);
-  neighbors_.erase(std::ranges::unique(neighbors_).begin(), neighbors_.end());
+  neighbors_.erase(std::unique(neighbors_.begin(), neighbors_.end()), neighbors_.end());
   std::erase(neighbors_, comm_->rank());
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -101,14 +103,15 @@ std::vector<int> cut_line(std::span<const std::int64_t> weights, int parts) {
 
 std::optional<Factors> factor_ranks(int ranks, int nx, int ny, double length_x, double length_y) {
   std::optional<Factors> best;
-  double least = 0.0;
+  std::pair<double, int> least;  // halo, then how far from square
   for (int px = 1; px <= ranks; ++px) {
     const int py = ranks / px;
     if (px * py != ranks || px > nx || py > ny) continue;
     const double halo = (px > 1 ? length_y / py : 0.0) + (py > 1 ? length_x / px : 0.0);
-    if (!best || halo < least) {
+    const std::pair cost{halo, std::abs(px - py)};
+    if (!best || cost < least) {
       best = Factors{px, py};
-      least = halo;
+      least = cost;
     }
   }
   return best;

@@ -95,8 +95,8 @@ double largest_force(const Scene& scene) {
   const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
   const double column = m * in.jamming.gravity * drop / r;
   const double elastic = k * r * std::sqrt(r);
-  double force = std::max(k * overlap * std::sqrt(overlap), column);
-  force = force > 0.0 ? std::min(force_headroom * force, elastic) : elastic;
+  const double impact = k * overlap * std::sqrt(overlap);
+  double force = std::max(impact > 0.0 ? std::min(force_headroom * impact, elastic) : elastic, force_headroom * column);
   if (in.near_field) {
     const auto& nf = *in.near_field;
     const double d = scene.sizes.smallest();  // deep inside contact

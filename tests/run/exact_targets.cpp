@@ -54,10 +54,10 @@ class Bench {
 };
 
 // No gravity, damping, friction, drag: only what a test adds. The rank border is at half the length.
-input::Input vacuum(int dimension, double length, double r, double dt) {
+input::Input vacuum(int dimension, double length, double r, double dt, double speed) {
   input::Input in = test::small_input(dimension, length, r);
   in.jamming.gravity = 0.0;
-  in.layers.velocity = {1e-3, 0.0, 0.0};  // eq. (23) wants some speed
+  in.layers.velocity = {speed, 0.0, 0.0};  // eq. (23) and the range of the force sums want it
   in.contact.damping_ratio = in.contact.friction = in.contact.wall_friction = 0.0;
   in.dynamics.time_step = dt;
   return in;
@@ -78,7 +78,7 @@ class Targets : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(Targets, TwoGlassSpheresHeadOn) {
-  input::Input in = vacuum(dimension_, 0.2, 0.01, 2e-8);
+  input::Input in = vacuum(dimension_, 0.2, 0.01, 2e-8, 20.0);
   in.particles.density = 2800.0;
   in.particles.youngs_modulus = 48e9;
   in.particles.poisson_ratio = 0.20;
@@ -102,7 +102,7 @@ TEST_P(Targets, TwoGlassSpheresHeadOn) {
 }
 
 TEST_P(Targets, AluminiumSphereOnARigidPlane) {
-  input::Input in = vacuum(dimension_, 1.0, 0.1, 2e-7);
+  input::Input in = vacuum(dimension_, 1.0, 0.1, 2e-7, 0.2);
   in.particles.density = 2699.0;
   in.particles.youngs_modulus = 70e9;
   in.particles.poisson_ratio = 0.30;
@@ -126,7 +126,7 @@ TEST_P(Targets, RestitutionDoesNotDependOnTheImpactSpeed) {
   for (const double xi : {0.1, 0.4}) {
     std::map<double, double> e;
     for (const double speed : {0.02, 0.2, 2.0}) {
-      input::Input in = vacuum(dimension_, 0.4, 0.02, 2e-7);
+      input::Input in = vacuum(dimension_, 0.4, 0.02, 2e-7, speed);
       in.contact.damping_ratio = xi;
       Bench bench(comm_, in);
       bench.place(at(0.2 - 0.0200001, 0.2, 0.4), 0.02, {0.5 * speed, 0, 0});
@@ -146,7 +146,7 @@ TEST_P(Targets, RestitutionDoesNotDependOnTheImpactSpeed) {
 // A sphere thrown at the floor: V_t along +x, V_n down. Returns its state after the impact.
 Bench::State thrown(const comm::Comm& comm, int dimension, double vt, double vn, double mu, const Vec3& start,
                     const Vec3& down) {
-  input::Input in = vacuum(dimension, 0.4, 0.02, 2e-7);
+  input::Input in = vacuum(dimension, 0.4, 0.02, 2e-7, vt + vn);
   in.contact.friction = in.contact.wall_friction = mu;
   Bench bench(comm, in);
   Vec3 v = down;
@@ -176,7 +176,7 @@ TEST_P(Targets, SteepImpactEndsRolling) {
 }
 
 TEST_P(Targets, SlidingSphereStartsToRoll) {
-  input::Input in = vacuum(dimension_, 1.0, 0.02, 1e-6);
+  input::Input in = vacuum(dimension_, 1.0, 0.02, 1e-6, 0.2);
   in.contact.friction = in.contact.wall_friction = 0.3;
   in.jamming.gravity = 10.0;
   in.contact.damping_ratio = 0.1;
@@ -200,7 +200,7 @@ TEST_P(Targets, SlidingSphereStartsToRoll) {
 
 TEST_P(Targets, ColumnOfSpheresCarriesItsWeight) {
   const int n = 5;
-  input::Input in = vacuum(dimension_, 0.4, 0.02, 2e-5);
+  input::Input in = vacuum(dimension_, 0.4, 0.02, 2e-5, 0.1);
   in.jamming.gravity = 10.0;
   in.contact.damping_ratio = 0.5;
   Bench bench(comm_, in);
@@ -220,7 +220,7 @@ TEST_P(Targets, ColumnOfSpheresCarriesItsWeight) {
 }
 
 TEST_P(Targets, FreeFallWithDrag) {
-  input::Input in = vacuum(dimension_, 4.0, 0.02, 1e-5);
+  input::Input in = vacuum(dimension_, 4.0, 0.02, 1e-5, 0.1);
   in.jamming.gravity = 10.0;
   in.drag.coefficient = 0.1;
   const double m = 1000.0 * 4.0 / 3.0 * std::numbers::pi * 8e-6;
