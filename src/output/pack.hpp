@@ -6,43 +6,42 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "observe/measure.hpp"
 #include "output/record.hpp"
 #include "particles/store.hpp"
 
 namespace packmpi::output {
 
 /// One contact for /contacts.
-struct ContactRow {
-  GlobalId first, second;     ///< first < second
-  double overlap;             ///< [m]
-  Vec3 force;                 ///< [N] on the first
-};
+using ContactRow = observe::ContactForce;
 
 /// What this rank contributes to a pack.
 struct PackParts {
-  const particles::Store* store = nullptr;   ///< owned particles; ids over all ranks are 0 .. N-1 without gap
-  std::span<const std::int32_t> layer;       ///< of the owned, in slot order
-  std::span<const std::int32_t> contacts;    ///< touching particles of the owned, in slot order
-  const std::vector<ContactRow>* contact_rows = nullptr;   ///< none: no /contacts
+  const particles::Store* store = nullptr;  ///< owned particles; ids over all ranks are 0 .. N-1 without gap
+  std::span<const std::int32_t> layer;      ///< of the owned, in slot order
+  std::span<const std::int32_t> contacts;   ///< touching particles of the owned, in slot order
+  const std::vector<ContactRow>* contact_rows = nullptr;  ///< none: no /contacts; on all ranks or on none
 };
 
 /// Collective. Writes PATH (NAME.hdf): to PATH.tmp, flushed, fsync'ed, renamed. Rows sorted by id whatever the ranks;
-/// nothing is gathered. Throws Error(io_failure) on every rank, with the reason (full disk, permissions); then PATH is untouched.
+/// nothing is gathered. Throws on every rank: Error(io_failure) with the reason (full disk, permissions), or
+/// Error(numerical_failure) if the ids are not 0 .. N-1; then PATH is untouched and PATH.tmp is gone.
+/// Memory: about 200 bytes a particle of this rank's share, for the time of the call.
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts, const RunRecord& record);
 
 /// Rows of a pack, sorted by id.
 struct PackRows {
   int dimension = 3;
   std::vector<GlobalId> id;
-  std::vector<Vec3> position, velocity, spin;   ///< spin empty if absent
+  std::vector<Vec3> position, velocity, spin;  ///< spin empty if absent
   std::vector<double> radius;
   std::vector<std::int32_t> layer, contacts;
 };
 /// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure).
 [[nodiscard]] PackRows read_pack(const std::string& path);
 
-/// Collective. Throws Error(io_failure) unless `folder` exists or can be made, a file can be created in it, and `bytes` of
-/// disk space are free. Leaves nothing behind.
+/// Collective. Throws Error(io_failure) unless `folder` exists or can be made, a file can be created in it, and `bytes`
+/// of disk space are free. A folder that had to be made stays, unless the check fails; no file is left behind.
 void check_writable(const comm::Comm& comm, const std::string& folder, std::int64_t bytes);
 
 }  // namespace packmpi::output

@@ -1,4 +1,5 @@
-/// What a run reports about itself: asked versus got, per layer and in all; written to the pack, NAME.json and the screen.
+/// What a run reports about itself: asked versus got, per layer and in all; written to the pack, NAME.json and the
+/// screen.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,29 +11,29 @@ namespace packmpi::output {
 
 /// One row of the per-layer table.
 struct LayerRow {
-  std::int64_t inserted = 0;        ///< particles
-  std::int64_t total = 0;           ///< particles after it
-  std::int64_t attempts = 0;        ///< darts thrown
-  double fraction_asked = 0.0;      ///< phi_0
-  double fraction_got = 0.0;        ///< solid volume inserted / region volume
-  double region_bottom = 0.0;       ///< [m] T
-  double height = 0.0;              ///< [m] after settling, by the scene's height rule
-  double top = 0.0;                 ///< [m] highest particle top
-  double duration = 0.0;            ///< [s] simulated
+  std::int64_t inserted = 0;    ///< particles
+  std::int64_t total = 0;       ///< particles after it
+  std::int64_t attempts = 0;    ///< darts thrown
+  double fraction_asked = 0.0;  ///< phi_0
+  double fraction_got = 0.0;    ///< solid volume inserted / region volume
+  double region_bottom = 0.0;   ///< [m] T
+  double height = 0.0;          ///< [m] after settling, by the scene's height rule
+  double top = 0.0;             ///< [m] highest particle top
+  double duration = 0.0;        ///< [s] simulated
   std::int64_t steps = 0;
-  double kinetic_per_mgd = 0.0;     ///< mean kinetic energy / (m g d) of a mean particle at the end of the layer
-  double max_overlap = 0.0;         ///< largest overlap / smaller radius
-  double coordination = 0.0;        ///< mean touching particles
-  std::string stop_reason;          ///< "duration", "settled"
+  double kinetic_per_mgd = 0.0;  ///< mean kinetic energy / (m g d) of a mean particle at the end of the layer
+  double max_overlap = 0.0;      ///< largest overlap / smaller radius
+  double coordination = 0.0;     ///< mean touching particles
+  std::string stop_reason;       ///< "duration", "settled"
 };
 
 /// The final audit: what must be true of a pack.
 struct Audit {
-  std::int64_t expected = 0, found = 0;   ///< particles; lost = expected - found
+  std::int64_t expected = 0, found = 0;  ///< particles; lost = expected - found
   std::int64_t non_finite = 0;
-  double worst_overlap = 0.0;             ///< overlap / smaller radius
-  double worst_wall_penetration = 0.0;    ///< penetration / radius
-  std::int64_t outside = 0;               ///< centres outside the container
+  double worst_overlap = 0.0;           ///< overlap / smaller radius
+  double worst_wall_penetration = 0.0;  ///< penetration / radius
+  std::int64_t outside = 0;             ///< centres outside the container
 };
 
 /// Everything about a run but its particles. Quantities marked (*) are the same on any number of ranks.
@@ -41,27 +42,27 @@ struct RunRecord {
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
-  Vec3 size{};                       ///< [m] container
-  double height_asked = 0.0;         ///< [m] H_d
-  double fraction_asked = 0.0;       ///< phi_0 of each insertion
-  double mean_radius_asked = 0.0, sd_radius_asked = 0.0, min_radius_asked = 0.0, max_radius_asked = 0.0;   ///< [m]
+  Vec3 size{};                  ///< [m] container
+  double height_asked = 0.0;    ///< [m] H_d
+  double fraction_asked = 0.0;  ///< phi_0 of each insertion
+  double mean_radius_asked = 0.0, sd_radius_asked = 0.0, min_radius_asked = 0.0, max_radius_asked = 0.0;  ///< [m]
   // got (*)
   std::int64_t particles = 0;
-  double height = 0.0, top = 0.0;    ///< [m]
-  double phi = 0.0;                  ///< solid fraction below H_d (CC16 eq. 22)
-  double phi_bulk = 0.0;             ///< solid fraction between 0.2 H_d and 0.8 H_d
-  double creep = 0.0;                ///< d phi_bulk / dt at the end [1/s]
-  double coordination = 0.0;         ///< mean touching particles
-  double rattlers = 0.0;             ///< share of particles with fewer than dimension + 1 contacts
-  double mean_overlap = 0.0;         ///< mean over contacts of overlap / smaller radius
-  double kinetic_energy = 0.0;       ///< [J]
-  double floor_force = 0.0;          ///< [N]
-  double weight = 0.0;               ///< [N] m g of all particles
-  double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;   ///< [m]
-  double time_step = 0.0;            ///< [s]
+  double height = 0.0, top = 0.0;  ///< [m]
+  double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
+  double phi_bulk = 0.0;           ///< solid fraction between 0.2 H_d and 0.8 H_d
+  double creep = 0.0;              ///< d phi_bulk / dt at the end [1/s]
+  double coordination = 0.0;       ///< mean touching particles
+  double rattlers = 0.0;           ///< share of particles with fewer than dimension + 1 contacts
+  double mean_overlap = 0.0;       ///< mean over contacts of overlap / smaller radius
+  double kinetic_energy = 0.0;     ///< [J]
+  double floor_force = 0.0;        ///< [N]
+  double weight = 0.0;             ///< [N] m g of all particles
+  double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
+  double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
   std::int64_t particle_steps = 0;
-  bool reached = false;              ///< height asked reached
+  bool reached = false;  ///< height asked reached
   std::string stop_reason;
   std::vector<LayerRow> layers;
   Audit audit;
@@ -70,7 +71,7 @@ struct RunRecord {
   std::string decomposition, version, git, compiler, architecture;
   double wall_seconds = 0.0;
   double particle_steps_per_second = 0.0;
-  double bytes_per_particle = 0.0;   ///< worst rank
+  double bytes_per_particle = 0.0;  ///< worst rank
 };
 
 }  // namespace packmpi::output

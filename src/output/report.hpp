@@ -20,29 +20,33 @@ void write_text(const comm::Comm& comm, const std::string& path, const std::stri
 
 /// One row of NAME.steps.csv.
 struct StepRow {
-  std::int32_t layer;
-  std::int64_t step;            ///< since the beginning of the run
-  double time;                  ///< [s] simulated
-  std::int64_t particles;
-  double kinetic_energy;        ///< [J]
-  double max_speed;             ///< [m/s]
-  double top;                   ///< [m]
-  double mean_height;           ///< [m] mean height of the centres
-  double max_force;             ///< [N]
-  std::int64_t rebuilds;        ///< so far; depends on the ranks
+  std::int32_t layer = 0;
+  std::int64_t step = 0;  ///< since the beginning of the run
+  double time = 0.0;      ///< [s] simulated
+  std::int64_t particles = 0;
+  double kinetic_energy = 0.0;  ///< [J]
+  double max_speed = 0.0;       ///< [m/s]
+  double top = 0.0;             ///< [m]
+  double mean_height = 0.0;     ///< [m] mean height of the centres
+  double max_force = 0.0;       ///< [N]
+  std::int64_t rebuilds = 0;    ///< so far; depends on the ranks
 };
 
-/// NAME.steps.csv, written row by row by rank 0 (a header line names columns and units). A failed write is found at close().
+/// NAME.steps.csv, written row by row by rank 0 (a header line names columns and units); each row is on its way to the
+/// disk when append() returns. A failed write is told at close().
 class StepLog {
  public:
-  StepLog(const comm::Comm& comm, const std::string& path);   ///< collective; Error(io_failure) on all ranks
-  void append(const StepRow& row);                            ///< local; no-op but on rank 0
-  void close();                                               ///< collective; Error(io_failure) on all ranks
+  StepLog(const comm::Comm& comm, const std::string& path);  ///< collective; Error(io_failure) on all ranks
+  void append(const StepRow& row);                           ///< local; no-op but on rank 0
+  void close();                                              ///< collective; Error(io_failure) on all ranks
 
  private:
+  void flush();
+
   const comm::Comm* comm_;
   std::string path_;
   std::ofstream file_;
+  int failure_ = 0;  // errno of the first write that failed
 };
 
 }  // namespace packmpi::output

@@ -1,0 +1,51 @@
+/// Files that appear whole or not at all, with the system's own words when they cannot. Rank-local; private to this
+/// room.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace packmpi::output {
+
+/// An open file, closed on every path.
+class Descriptor {
+ public:
+  Descriptor(const std::string& path, int flags);  ///< throws Error(io_failure)
+  ~Descriptor();
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const noexcept { return fd_; }
+  /// Close now; a delayed write error is thrown as Error(io_failure).
+  void close();
+
+ private:
+  std::string path_;
+  int fd_;
+};
+
+/// Throws Error(io_failure): "cannot write PATH: WHAT: REASON", the reason of the errno `number`.
+[[noreturn]] void fail(const std::string& path, std::string_view what, int number);
+
+/// Make PATH a file without contents of which `bytes` are already on the disk (where the file system can promise that;
+/// elsewhere the free space is compared), so that a full disk is met here and not in the middle of a collective write.
+void reserve(const std::string& path, std::int64_t bytes);
+/// The same for a file that exists; its contents and size stay.
+void reserve_existing(const std::string& path, std::int64_t bytes);
+
+/// What keeps bytes from being written to PATH now, as far as the system tells afterwards: the reason for an I/O
+/// library that lost the errno. Empty if nothing is found.
+[[nodiscard]] std::string diagnose(const std::string& path);
+
+/// TEMPORARY becomes PATH, on the disk to stay: fsync, rename, fsync of the folder.
+void commit(const std::string& temporary, const std::string& path);
+
+/// Remove PATH if it is there.
+void discard(const std::string& path) noexcept;
+
+/// Write `text` whole: temporary, fsync, rename. On failure PATH is as it was.
+void write_whole(const std::string& path, std::string_view text);
+
+/// The folder of a path, "." if none is named.
+[[nodiscard]] std::string folder_of(const std::string& path);
+
+}  // namespace packmpi::output

@@ -1,0 +1,58 @@
+#include <nlohmann/json.hpp>
+
+#include "output/fields.hpp"
+#include "output/report.hpp"
+
+namespace packmpi::output {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_object(const std::vector<Field>& fields) {
+  Json object = Json::object();
+  for (const Field& field : fields) std::visit([&](const auto& value) { object[field.name] = value; }, field.value);
+  return object;
+}
+
+void add_units(Json& units, const std::vector<Field>& fields) {
+  for (const Field& field : fields) {
+    if (field.unit[0] != '\0') units[field.name] = field.unit;
+  }
+}
+
+Json to_rows(const RunRecord& record) {
+  Json rows = Json::array();
+  for (std::size_t k = 0; k < record.layers.size(); ++k) rows.push_back({{"layer", k}});
+  for (const LayerColumn& column : layer_columns(record.layers)) {
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t k = 0; k < values.size(); ++k) rows[k][column.name] = values[k];
+        },
+        column.values);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string to_json(const RunRecord& record) {
+  Json units = Json::object();
+  for (const auto& fields : {asked_fields(record), got_fields(record), audit_fields(record.audit)})
+    add_units(units, fields);
+  for (const LayerColumn& column : layer_columns({})) {
+    if (column.unit[0] != '\0') units[column.name] = column.unit;
+  }
+  Json root;
+  root["format"] = "packmpi-summary";
+  root["format_version"] = 1;
+  root["asked"] = to_object(asked_fields(record));
+  root["got"] = to_object(got_fields(record));
+  root["audit"] = to_object(audit_fields(record.audit));
+  root["layers"] = to_rows(record);
+  root["units"] = std::move(units);
+  root["provenance"] = to_object(provenance_fields(record));
+  // Text from outside may be no UTF-8; a wrong byte is replaced, not an exception at the end of a long run.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace packmpi::output

@@ -1,0 +1,172 @@
+#include "output/pack_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "output/scatter.hpp"
+
+namespace packmpi::output {
+namespace {
+
+std::vector<ParticleRow> rows_here(const PackParts& parts) {
+  const particles::Store& store = *parts.store;
+  std::vector<ParticleRow> rows(static_cast<std::size_t>(store.owned()));
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    rows[k] = {store.ids()[k],  store.position(i), store.velocity(i), store.spin(i),
+               store.radius(i), parts.layer[k],    parts.contacts[k]};
+  }
+  return rows;
+}
+
+[[noreturn]] void fail_ids(std::int64_t total, std::string_view what, GlobalId id) {
+  throw Error(ExitCode::numerical_failure,
+              fmt::format("the ids of the {} particles are not 0 .. {}: {} {}", total, total - 1, id, what));
+}
+
+void check_range(const std::vector<ParticleRow>& rows, std::int64_t total) {
+  for (const ParticleRow& row : rows) {
+    if (row.id < 0 || row.id >= total) fail_ids(total, "is out of range", row.id);
+  }
+}
+
+void check_complete(const std::vector<ParticleRow>& rows, GlobalId begin, GlobalId end, std::int64_t total) {
+  GlobalId expected = begin;
+  for (const ParticleRow& row : rows) {
+    if (row.id < expected) fail_ids(total, "is there twice", row.id);
+    if (row.id > expected) fail_ids(total, "is missing", expected);
+    ++expected;
+  }
+  if (expected < end) fail_ids(total, "is missing", expected);
+}
+
+h5::Slab slab_of(const comm::Comm& comm, std::size_t count) {
+  const auto mine = static_cast<std::int64_t>(count);
+  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), count};
+}
+
+void add_particles(const PackBlock& block, std::vector<h5::Column>& plan) {
+  const auto& rows = block.rows;
+  const h5::Slab& slab = block.particles;
+  using Row = ParticleRow;
+  plan.push_back(h5::make_column<std::int64_t>("/particles/id", "", slab, rows, [](const Row& r) { return r.id; }));
+  plan.push_back(
+      h5::make_column<double>("/particles/position", "m", slab, rows, [](const Row& r) { return r.position; }));
+  plan.push_back(h5::make_column<double>("/particles/radius", "m", slab, rows, [](const Row& r) { return r.radius; }));
+  plan.push_back(
+      h5::make_column<double>("/particles/velocity", "m/s", slab, rows, [](const Row& r) { return r.velocity; }));
+  if (block.rotation) {
+    plan.push_back(
+        h5::make_column<double>("/particles/spin", "rad/s", slab, rows, [](const Row& r) { return r.spin; }));
+  }
+  plan.push_back(
+      h5::make_column<std::int32_t>("/particles/layer", "", slab, rows, [](const Row& r) { return r.layer; }));
+  plan.push_back(
+      h5::make_column<std::int32_t>("/particles/contacts", "", slab, rows, [](const Row& r) { return r.contacts; }));
+}
+
+void add_contacts(const PackBlock& block, std::vector<h5::Column>& plan) {
+  const auto& rows = block.contact_rows;
+  const h5::Slab& slab = block.contacts;
+  using Row = ContactRow;
+  plan.push_back(h5::make_column<std::int64_t>("/contacts/pair", "", slab, rows, [](const Row& r) {
+    return std::array<std::int64_t, 2>{r.first, r.second};
+  }));
+  plan.push_back(h5::make_column<double>("/contacts/overlap", "m", slab, rows, [](const Row& r) { return r.overlap; }));
+  plan.push_back(h5::make_column<double>("/contacts/force", "N", slab, rows, [](const Row& r) { return r.force; }));
+}
+
+/// VTKHDF 1.0, UnstructuredGrid: one cell, a poly-vertex of all particles, from the datasets that are there.
+void write_view(hid_t file, const PackBlock& block) {
+  constexpr std::uint8_t poly_vertex = 2;
+  using Numbers = std::vector<std::int64_t>;
+  const auto total = static_cast<std::int64_t>(block.particles.total);
+  const h5::Handle view = h5::create_group(file, "/VTKHDF");
+  h5::set_attribute(view.get(), "Version", Numbers{1, 0});
+  h5::set_fixed_attribute(view.get(), "Type", "UnstructuredGrid");
+  h5::write_small(file, "/VTKHDF/NumberOfPoints", "", Numbers{total});
+  h5::write_small(file, "/VTKHDF/NumberOfCells", "", Numbers{1});
+  h5::write_small(file, "/VTKHDF/NumberOfConnectivityIds", "", Numbers{total});
+  h5::write_small(file, "/VTKHDF/Offsets", "", Numbers{0, total});
+  h5::write_small(file, "/VTKHDF/Types", "", std::vector<std::uint8_t>{poly_vertex});
+  h5::hard_link(file, "/particles/position", "/VTKHDF/Points");
+  h5::hard_link(file, "/particles/id", "/VTKHDF/Connectivity");  // row k is particle k, so the ids are 0 .. N-1
+  (void)h5::create_group(file, "/VTKHDF/PointData");
+  std::vector<std::string> names{"id", "radius", "velocity", "layer", "contacts"};
+  if (block.rotation) names.emplace_back("spin");
+  for (const std::string& name : names) h5::hard_link(file, "/particles/" + name, "/VTKHDF/PointData/" + name);
+}
+
+/// "name: unit; ..." for attributes, which cannot have attributes of their own.
+std::string list_units(const std::vector<Field>& fields) {
+  std::string text;
+  for (const Field& field : fields) {
+    if (field.unit[0] != '\0') text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", field.name, field.unit);
+  }
+  return text;
+}
+
+void write_summary(hid_t file, const RunRecord& record) {
+  const h5::Handle group = h5::create_group(file, "/summary");
+  std::vector<Field> fields = asked_fields(record);
+  for (Field& field : got_fields(record)) fields.push_back(std::move(field));
+  h5::set_attributes(group.get(), fields);
+  h5::set_attribute(group.get(), "units", list_units(fields));
+  h5::set_attributes(h5::create_group(file, "/summary/audit").get(), audit_fields(record.audit));
+  (void)h5::create_group(file, "/summary/layers");
+  for (const LayerColumn& column : layer_columns(record.layers)) {
+    std::visit(
+        [&](const auto& values) {
+          h5::write_small(file, std::string("/summary/layers/") + column.name, column.unit, values);
+        },
+        column.values);
+  }
+}
+
+}  // namespace
+
+PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
+  PackBlock block;
+  block.rotation = parts.store->layout().rotation;
+  const std::int64_t total = comm.sum(std::int64_t{parts.store->owned()});
+  std::vector<ParticleRow> rows = rows_here(parts);
+  comm::agree_on(comm, [&] { check_range(rows, total); });
+
+  const IdBlocks blocks{total, comm.size()};
+  block.rows = scatter(comm, blocks, std::move(rows), &ParticleRow::id);
+  std::sort(block.rows.begin(), block.rows.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  comm::agree_on(comm,
+                 [&] { check_complete(block.rows, blocks.begin(comm.rank()), blocks.begin(comm.rank() + 1), total); });
+  block.particles = slab_of(comm, block.rows.size());
+
+  block.has_contacts = parts.contact_rows != nullptr;
+  if (block.has_contacts) {
+    block.contact_rows = scatter(comm, blocks, *parts.contact_rows, &ContactRow::first);
+    std::sort(block.contact_rows.begin(), block.contact_rows.end(),
+              [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
+    block.contacts = slab_of(comm, block.contact_rows.size());
+  }
+  return block;
+}
+
+std::vector<h5::Column> plan_columns(const PackBlock& block) {
+  std::vector<h5::Column> plan;
+  add_particles(block, plan);
+  if (block.has_contacts) add_contacts(block, plan);
+  return plan;
+}
+
+void write_frame(hid_t file, const PackBlock& block, const std::vector<h5::Column>& plan, const RunRecord& record) {
+  h5::set_attribute(file, "format", std::string("packmpi-pack"));
+  h5::set_attribute(file, "format_version", std::int64_t{1});
+  (void)h5::create_group(file, "/particles");
+  if (block.has_contacts) (void)h5::create_group(file, "/contacts");
+  for (const h5::Column& column : plan) h5::create_dataset(file, column);
+  write_summary(file, record);
+  h5::set_attributes(h5::create_group(file, "/provenance").get(), provenance_fields(record));
+  write_view(file, block);
+}
+
+}  // namespace packmpi::output

@@ -1,0 +1,245 @@
+#include "output/pack.hpp"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <bit>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "output/samples.hpp"
+
+namespace packmpi::output {
+namespace {
+
+using testing::every_spread;
+using testing::Folder;
+using testing::Grain;
+using testing::Spread;
+
+/// An HDF5 object of the tests, closed at the end.
+struct Object {
+  hid_t id;
+  explicit Object(hid_t opened) : id(opened) {}
+  ~Object() {
+    if (id >= 0) H5Oclose(id);
+  }
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
+};
+
+struct File {
+  hid_t id;
+  explicit File(const std::string& path) : id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
+  ~File() { H5Fclose(id); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  [[nodiscard]] bool has(const std::string& path) const { return H5Lexists(id, path.c_str(), H5P_DEFAULT) > 0; }
+
+  /// The raw bytes of a dataset, in its own type.
+  [[nodiscard]] std::string bytes(const std::string& path) const {
+    const Object set(H5Dopen2(id, path.c_str(), H5P_DEFAULT));
+    const hid_t type = H5Dget_type(set.id);
+    const hid_t space = H5Dget_space(set.id);
+    std::string out(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) * H5Tget_size(type), '\0');
+    if (!out.empty()) {
+      EXPECT_GE(H5Dread(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()), 0) << path;
+    }
+    H5Sclose(space);
+    H5Tclose(type);
+    return out;
+  }
+
+  [[nodiscard]] std::string attribute(const std::string& object, const char* name) const {
+    const hid_t at = H5Aopen_by_name(id, object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT);
+    if (at < 0) return "(none)";
+    const hid_t type = H5Aget_type(at);
+    const hid_t space = H5Aget_space(at);
+    std::string out(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) * H5Tget_size(type), '\0');
+    if (H5Tis_variable_str(type) > 0) {
+      char* words = nullptr;
+      EXPECT_GE(H5Aread(at, type, &words), 0);
+      out = words;
+      H5free_memory(words);
+    } else {
+      EXPECT_GE(H5Aread(at, type, out.data()), 0);
+    }
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(at);
+    return out;
+  }
+
+  [[nodiscard]] haddr_t address(const std::string& path) const {
+    H5O_info_t info{};
+    EXPECT_GE(H5Oget_info_by_name2(id, path.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT), 0) << path;
+    return info.addr;
+  }
+};
+
+template <class T>
+std::string raw(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+class Pack : public ::testing::Test {
+ protected:
+  comm::Comm comm_{MPI_COMM_WORLD};
+  Folder folder_{comm_};
+
+  std::string write(const std::string& name, const particles::Layout& layout, const std::vector<Grain>& grains,
+                    Spread spread, bool with_contacts) {
+    const auto parts = testing::make_parts(comm_, layout, grains, spread);
+    write_pack(comm_, folder_.file(name), parts.view(with_contacts), testing::some_record(layout.dimension, 3));
+    return folder_.file(name);
+  }
+};
+
+void expect_grains(const PackRows& pack, const std::vector<Grain>& grains, const particles::Layout& layout) {
+  ASSERT_EQ(pack.id.size(), grains.size());
+  ASSERT_EQ(pack.spin.size(), layout.rotation ? grains.size() : 0u);
+  EXPECT_EQ(pack.dimension, layout.dimension);
+  particles::Store one(layout);  // the spin goes through r omega: compare what the store gives
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    one.add(static_cast<GlobalId>(k), grains[k].x, grains[k].r, grains[k].v, grains[k].w);
+    EXPECT_EQ(pack.id[k], static_cast<GlobalId>(k));
+    EXPECT_EQ(pack.position[k], grains[k].x);
+    EXPECT_EQ(pack.velocity[k], grains[k].v);
+    EXPECT_EQ(pack.radius[k], grains[k].r);
+    EXPECT_EQ(pack.layer[k], testing::layer_of(pack.id[k]));
+    EXPECT_EQ(pack.contacts[k], testing::contacts_of(pack.id[k]));
+    if (layout.rotation) {
+      EXPECT_EQ(pack.spin[k], one.spin(static_cast<LocalIndex>(k)));
+    }
+  }
+}
+
+TEST_F(Pack, ParticlesComeBackBitForBitWhereverTheyWere) {
+  for (const int dimension : {2, 3}) {
+    for (const bool rotation : {true, false}) {
+      const auto layout = particles::layout_of(dimension, rotation);
+      for (const std::size_t count : {0u, 1u, 5u, 137u}) {  // fewer particles than ranks, too
+        const auto grains = testing::some_grains(count, dimension);
+        for (const Spread spread : every_spread) {
+          const std::string path = write("pack.hdf", layout, grains, spread, false);
+          expect_grains(read_pack(path), grains, layout);
+          comm_.barrier();
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Pack, DatasetsDoNotDependOnTheSpread) {
+  const auto layout = particles::layout_of(3, true);
+  const auto grains = testing::some_grains(101, 3);
+  const std::string reference = write("a.hdf", layout, grains, Spread::last, true);
+  for (const Spread spread : every_spread) {
+    const std::string other = write("b.hdf", layout, grains, spread, true);
+    if (comm_.rank() == 0) {
+      const File a(reference);
+      const File b(other);
+      for (const char* path : {"/particles/id", "/particles/position", "/particles/radius", "/particles/velocity",
+                               "/particles/spin", "/particles/layer", "/particles/contacts", "/contacts/pair",
+                               "/contacts/overlap", "/contacts/force", "/VTKHDF/Offsets", "/summary/layers/height"}) {
+        EXPECT_EQ(a.bytes(path), b.bytes(path)) << path;
+      }
+    }
+    comm_.barrier();
+  }
+}
+
+TEST_F(Pack, ContactsAreSortedByPair) {
+  const std::size_t count = 101;
+  const auto grains = testing::some_grains(count, 3);
+  const std::string path = write("pack.hdf", particles::layout_of(3, true), grains, Spread::some, true);
+  if (comm_.rank() != 0) return;
+  std::string pair, overlap, force;
+  for (GlobalId id = 0; id < static_cast<GlobalId>(count); ++id) {
+    auto rows = testing::contact_rows(id, count);
+    std::reverse(rows.begin(), rows.end());  // by the second
+    for (const ContactRow& row : rows) {
+      pair += raw(row.first) + raw(row.second);
+      overlap += raw(row.overlap);
+      force += raw(row.force);
+    }
+  }
+  const File file(path);
+  EXPECT_EQ(file.bytes("/contacts/pair"), pair);
+  EXPECT_EQ(file.bytes("/contacts/overlap"), overlap);
+  EXPECT_EQ(file.bytes("/contacts/force"), force);
+}
+
+TEST_F(Pack, WithoutRotationOrContactsTheirDatasetsAreAbsent) {
+  const std::string path =
+      write("pack.hdf", particles::layout_of(3, false), testing::some_grains(9, 3), Spread::all, false);
+  if (comm_.rank() != 0) return;
+  const File file(path);
+  EXPECT_FALSE(file.has("/particles/spin"));
+  EXPECT_FALSE(file.has("/VTKHDF/PointData/spin"));
+  EXPECT_FALSE(file.has("/contacts"));
+}
+
+TEST_F(Pack, NoContactsAtAllIsAnEmptyTable) {
+  auto parts = testing::make_parts(comm_, particles::layout_of(3, true), testing::some_grains(9, 3), Spread::all);
+  parts.rows.clear();
+  write_pack(comm_, folder_.file("pack.hdf"), parts.view(true), testing::some_record(3, 0));
+  if (comm_.rank() != 0) return;
+  const File file(folder_.file("pack.hdf"));
+  EXPECT_TRUE(file.has("/contacts/pair"));
+  EXPECT_EQ(file.bytes("/contacts/pair"), "");
+  EXPECT_EQ(file.bytes("/summary/layers/height"), "");
+}
+
+TEST_F(Pack, SaysWhatItIs) {
+  const auto record = testing::some_record(3, 3);
+  const std::string path =
+      write("pack.hdf", particles::layout_of(3, true), testing::some_grains(20, 3), Spread::all, true);
+  if (comm_.rank() != 0) return;
+  const File file(path);
+  EXPECT_EQ(file.attribute("/", "format"), "packmpi-pack");
+  EXPECT_EQ(file.attribute("/", "format_version"), raw(std::int64_t{1}));
+  EXPECT_EQ(file.attribute("/particles/position", "unit"), "m");
+  EXPECT_EQ(file.attribute("/particles/spin", "unit"), "rad/s");
+  EXPECT_EQ(file.attribute("/contacts/force", "unit"), "N");
+  EXPECT_EQ(file.attribute("/summary", "phi"), raw(record.phi));
+  EXPECT_EQ(file.attribute("/summary", "size"), raw(record.size));
+  EXPECT_EQ(file.attribute("/summary/audit", "found"), raw(record.audit.found));
+  EXPECT_EQ(file.attribute("/provenance", "effective_input"), record.effective_input);
+  EXPECT_EQ(file.attribute("/provenance", "seed"), raw(record.seed));
+  EXPECT_EQ(file.bytes("/summary/layers/stop_reason"), std::string("durationsettled\0duration", 24));
+}
+
+TEST_F(Pack, ViewIsMadeOfHardLinks) {
+  const std::string path =
+      write("pack.hdf", particles::layout_of(3, true), testing::some_grains(20, 3), Spread::runs, false);
+  if (comm_.rank() != 0) return;
+  const File file(path);
+  EXPECT_EQ(file.attribute("/VTKHDF", "Type"), "UnstructuredGrid");
+  EXPECT_EQ(file.address("/VTKHDF/Points"), file.address("/particles/position"));
+  EXPECT_EQ(file.address("/VTKHDF/Connectivity"), file.address("/particles/id"));
+  EXPECT_EQ(file.address("/VTKHDF/PointData/radius"), file.address("/particles/radius"));
+  EXPECT_EQ(file.bytes("/VTKHDF/NumberOfPoints"), raw(std::int64_t{20}));
+  EXPECT_EQ(file.bytes("/VTKHDF/Offsets"), raw(std::int64_t{0}) + raw(std::int64_t{20}));
+  EXPECT_EQ(file.bytes("/VTKHDF/Types"), "\2");
+}
+
+TEST_F(Pack, ReaderRefusesWhatIsNoPack) {
+  const std::string path = folder_.file("not" + std::to_string(comm_.rank()) + ".hdf");
+  std::ofstream(path) << "not a pack";
+  for (const std::string& bad : {path, folder_.file("absent.hdf")}) {
+    try {
+      (void)read_pack(bad);
+      FAIL() << bad;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::io_failure);
+      EXPECT_NE(std::string(error.what()).find(bad), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace packmpi::output
