@@ -11,32 +11,42 @@ namespace packmpi::rsa {
 
 /// Where and what to insert.
 struct LayerRegion {
-  std::uint32_t layer = 0;      ///< 0 ..
-  double bottom = 0.0;          ///< [m] T: top of the highest particle so far
-  double thickness = 0.0;       ///< [m] h_0
-  GlobalId first_id = 0;        ///< id of the layer's particle 0; ids ascend with the particle index
+  std::uint32_t layer = 0;  ///< 0 ..
+  double bottom = 0.0;      ///< [m] T: top of the highest particle so far
+  double thickness = 0.0;   ///< [m] h_0
+  GlobalId first_id = 0;    ///< id of the layer's particle 0; ids ascend with the particle index
 };
 
 /// What came of it; the same on all ranks and for any number of them.
 struct Insertion {
   std::int64_t inserted = 0;
-  std::int64_t darts = 0;          ///< positions tried
-  double solid_volume = 0.0;       ///< [m3] (2D: m2)
-  std::int64_t asked = 0;          ///< particles needed to reach phi_0
+  std::int64_t darts = 0;     ///< positions tried
+  double solid_volume = 0.0;  ///< [m3] (2D: m2)
+  std::int64_t asked = 0;     ///< particles needed to reach phi_0
 };
 
-/// How many particles the layer needs: the smallest n whose radii 0 .. n-1 have solid volume >= fraction * region volume.
-/// Collective. Exact sum, O(n / ranks) work and memory.
-[[nodiscard]] std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region);
+/// How many particles the layer needs: the smallest n whose radii 0 .. n-1 have solid volume >= fraction * region
+/// volume. Collective. Exact sum, O(n / ranks) work and memory.
+[[nodiscard]] std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene,
+                                            const LayerRegion& region);
+
+/// Graded particles are placed in so many classes, the largest first: in any other order the last large ones find no
+/// room (CC16 example 5.4: a million darts do not suffice). Equal particles are all in class 0.
+inline constexpr int size_classes = 8;
+
+/// The class of a radius [m]: equal parts of [smallest, largest], 0 holds the largest.
+[[nodiscard]] int size_class(const scene::Sizes& sizes, double radius);
 
 /// Collective. Throws every particle's first dart, then the second darts of those rejected, and so on, in the order
-/// (attempt, particle); a dart is kept if it overlaps none kept before it. Appends the placed particles of this rank's columns
-/// to `store`. Throws Error(bad_input) on all ranks, naming asked, placed and darts, if any particle is
-/// unplaced after layers.attempts darts.
+/// (size class, attempt, particle); a dart is kept if it overlaps none kept before it. Appends the placed particles of
+/// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming asked, placed and darts, if a particle
+/// is unplaced after layers.attempts darts; or earlier, once so few darts find room that the attempts left cannot
+/// suffice. Cost: O(darts / ranks) work, O(asked / ranks) memory, messages only to the ranks where darts fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
                                const LayerRegion& region, particles::Store& store);
 
-/// The dart of a particle: a uniform position with the whole sphere inside region and container (any lateral position on periodic axes). [m]
+/// The dart of a particle: a uniform position with the whole sphere inside region and container (any lateral position
+/// on periodic axes). [m]
 [[nodiscard]] Vec3 dart(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
                         std::uint32_t attempt);
 

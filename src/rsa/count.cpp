@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "geometry/volume.hpp"
+#include "rsa/insert.hpp"
+
+namespace packmpi::rsa {
+namespace {
+
+constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+constexpr int most_blocks = 10000;  // two or three are needed
+
+// The smallest n with n * volume >= target.
+std::int64_t count_of_equals(double target, double volume) {
+  auto n = std::max<std::int64_t>(1, static_cast<std::int64_t>(target / volume));
+  while (n > 1 && static_cast<double>(n - 1) * volume >= target) --n;
+  while (static_cast<double>(n) * volume < target) ++n;
+  return n;
+}
+
+// Adds up volumes as integers, so that the sum does not depend on how the particles are dealt out.
+class Tally {
+ public:
+  Tally(const scene::Scene& scene, std::uint32_t layer, double target)
+      : scene_(&scene), layer_(layer), quanta_(std::scalbn(1.0, 55 - std::ilogb(target))), target_(to_quanta(target)) {}
+
+  // Goes through [begin, end) of this rank and the blocks of the ranks above it. Collective. The count at which the
+  // target is reached, or `none`; then the blocks have been added.
+  std::int64_t add_blocks(const comm::Comm& comm, std::int64_t begin, std::int64_t end) {
+    std::vector<std::int64_t> volumes;
+    volumes.reserve(static_cast<std::size_t>(end - begin));
+    std::int64_t mine = 0;
+    for (std::int64_t k = begin; k < end; ++k) {
+      const double radius = scene_->sizes.draw(layer_, static_cast<std::uint64_t>(k));
+      volumes.push_back(to_quanta(geometry::volume(scene_->box.dimension, radius)));
+      mine += volumes.back();
+    }
+    std::int64_t reached = none;
+    std::int64_t sum = sum_ + comm.sum_below(mine);
+    for (std::size_t k = 0; k < volumes.size() && reached == none; ++k) {
+      sum += volumes[k];
+      if (sum >= target_) reached = begin + static_cast<std::int64_t>(k) + 1;
+    }
+    sum_ += comm.sum(mine);
+    return comm.min(reached);
+  }
+  [[nodiscard]] double missing() const { return static_cast<double>(target_ - sum_) / quanta_; }
+
+ private:
+  [[nodiscard]] std::int64_t to_quanta(double volume) const { return std::llrint(volume * quanta_); }
+
+  const scene::Scene* scene_;
+  std::uint32_t layer_;
+  double quanta_;  // a unit of volume, in quanta; the target is 2^55 to 2^56 of them
+  std::int64_t target_;
+  std::int64_t sum_ = 0;
+};
+
+}  // namespace
+
+std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
+  const double target = scene.in.layers.fraction * scene.box.floor_area() * region.thickness;
+  const double mean = geometry::volume(scene.box.dimension, scene.sizes.mean());  // not above the mean volume
+  if (!(target > 0.0) || !(mean > 0.0))
+    throw Error(ExitCode::bad_input, "layers: fraction, thickness and radii must be positive");
+  if (scene.sizes.equal()) return count_of_equals(target, mean);
+  Tally tally(scene, region.layer, target);
+  std::int64_t done = 0;
+  for (int block = 0; block < most_blocks; ++block) {
+    const std::int64_t each = static_cast<std::int64_t>(tally.missing() / mean / comm.size()) + 1;
+    const std::int64_t begin = done + comm.rank() * each;
+    const std::int64_t reached = tally.add_blocks(comm, begin, begin + each);
+    if (reached != none) return reached;
+    done += each * comm.size();
+  }
+  throw std::logic_error("rsa: the particles' volume does not grow");
+}
+
+}  // namespace packmpi::rsa

@@ -1,0 +1,60 @@
+/// A layer while it fills.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "particles/store.hpp"
+#include "rsa/border.hpp"
+#include "rsa/cells.hpp"
+#include "rsa/conflicts.hpp"
+#include "rsa/insert.hpp"
+#include "rsa/mail.hpp"
+#include "rsa/thrower.hpp"
+
+namespace packmpi::rsa {
+
+/// The spheres placed in this rank's columns and the particles whose next darts this rank throws. Memory: O(asked /
+/// ranks).
+class Filling {
+ public:
+  /// Local. The rank starts with an equal share of the `asked` particles, by index.
+  Filling(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
+          const LayerRegion& region, std::int64_t asked);
+
+  using Counts = std::array<std::int64_t, size_classes>;
+  /// Collective. Particles of each size class in the layer.
+  [[nodiscard]] Counts count() const;
+  /// Local. The particles of a size class come next; none may be waiting.
+  void begin(int size_class);
+  /// Collective. Throws the volley's darts for every particle that waits and appends the spheres that stay.
+  Conflicts::Outcome fire(const Volley& volley, particles::Store& store);
+  /// Collective. Of all spheres placed [m3], 2D: [m2].
+  [[nodiscard]] double solid_volume() const { return comm::exact_sum(comm_, volumes_); }
+
+ private:
+  struct Waiting {
+    std::uint64_t particle;
+    double radius;
+  };
+  [[nodiscard]] std::vector<Dart> throw_darts(const Volley& volley);
+  void append(const Dart& dart, particles::Store& store);
+  void wait(const Dart& dart) { waiting_.push_back({dart.particle, dart.sphere.radius}); }
+
+  const comm::Comm& comm_;
+  const scene::Scene& scene_;
+  LayerRegion region_;
+  Thrower thrower_;
+  CellGrid grid_;
+  Border border_;
+  Bins placed_;  // of this layer, in this rank's columns and near them
+  Conflicts conflicts_;
+  Mailbox<Dart> mail_;
+  std::array<std::vector<Waiting>, size_classes> share_;  // the classes to come
+  std::vector<Waiting> waiting_;                          // of the present class
+  std::vector<Dart> free_;       // darts that overlap none placed before their volley, in order
+  std::vector<double> volumes_;  // of the spheres placed here
+};
+
+}  // namespace packmpi::rsa

@@ -1,0 +1,97 @@
+#include "rsa/insert.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "rsa/filling.hpp"
+#include "rsa/pace.hpp"
+
+namespace packmpi::rsa {
+namespace {
+
+std::uint32_t attempt_limit(const scene::Scene& scene) {
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(scene.in.layers.attempts, 0, most));
+}
+
+// Collective. Throws darts until the class's `unplaced` particles are placed, and adds to `got`. The attempts made, if
+// they did not suffice.
+std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t unplaced, std::uint32_t limit,
+                                         Filling& filling, particles::Store& store, Insertion& got) {
+  Outlook outlook(limit);
+  Pace pace(comm.size());
+  for (std::uint32_t attempt = 0; unplaced > 0;) {
+    if (attempt == limit || outlook.hopeless(attempt, unplaced)) return attempt;
+    const Volley volley = pace.next(attempt, unplaced, limit);
+    const auto [kept, thrown] = filling.fire(volley, store);
+    unplaced -= kept;
+    const std::int64_t darts = thrown + unplaced * volley.count;
+    got.inserted += kept;
+    got.darts += darts;
+    outlook.record(darts, kept);
+    pace.record(darts, kept);
+    attempt += volley.count;
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void give_up(const scene::Scene& scene, const LayerRegion& region, const Insertion& got, int size_class,
+                          std::uint32_t attempts) {
+  const std::uint32_t limit = attempt_limit(scene);
+  const double share = got.solid_volume / (scene.box.floor_area() * region.thickness);
+  std::string where;
+  if (!scene.sizes.equal()) {
+    where = fmt::format(" at size class {} of {}, from the largest down", size_class + 1, size_classes);
+  }
+  const bool early = attempts < limit;
+  throw Error(
+      ExitCode::bad_input,
+      fmt::format(
+          "layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of the {:.4f} asked, "
+          "after {} darts; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates near "
+          "0.547 "
+          "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
+          "layers.thickness{}",
+          region.layer, got.inserted, got.asked, share, scene.in.layers.fraction, got.darts, attempts, limit, where,
+          early ? ", as too few of the last ones found room" : "", early ? "" : " or layers.attempts"));
+}
+
+void check_room(const scene::Scene& scene, const LayerRegion& region) {
+  const double diameter = 2.0 * scene.sizes.largest();
+  if (region.thickness >= diameter) return;
+  throw Error(ExitCode::bad_input,
+              fmt::format("layers.thickness = {} m is less than the largest particle diameter, {} m", region.thickness,
+                          diameter));
+}
+
+}  // namespace
+
+int size_class(const scene::Sizes& sizes, double radius) {
+  const double range = sizes.largest() - sizes.smallest();
+  if (!(range > 0.0)) return 0;
+  return std::clamp(static_cast<int>((sizes.largest() - radius) / range * size_classes), 0, size_classes - 1);
+}
+
+Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
+                 const LayerRegion& region, particles::Store& store) {
+  check_room(scene, region);
+  Insertion got;
+  got.asked = particles_needed(comm, scene, region);
+  Filling filling(comm, scene, ownership, region, got.asked);
+  const Filling::Counts counts = filling.count();
+  for (int k = 0; k < size_classes; ++k) {
+    filling.begin(k);
+    const auto failed =
+        place_class(comm, counts[static_cast<std::size_t>(k)], attempt_limit(scene), filling, store, got);
+    if (!failed) continue;
+    got.solid_volume = filling.solid_volume();
+    give_up(scene, region, got, k, *failed);
+  }
+  got.solid_volume = filling.solid_volume();
+  return got;
+}
+
+}  // namespace packmpi::rsa
