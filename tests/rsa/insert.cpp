@@ -1,0 +1,203 @@
+// The parallel insertion against the serial loop, particle by particle, in all decompositions.
+#include "rsa/insert.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "support/oracle_rsa.hpp"
+#include "support/rsa_scenes.hpp"
+
+namespace packmpi {
+namespace {
+
+using input::Decomposition;
+using scene::Ownership;
+using test::equal_radius;
+using test::gaussian_radius;
+using test::rsa_scene;
+using test::uniform_radius;
+
+constexpr std::array kinds{Decomposition::slab, Decomposition::pencil, Decomposition::metis};
+
+// None where this many ranks cannot share the scene that way.
+std::optional<Ownership> try_ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, Decomposition kind) {
+  try {
+    return Ownership(comm, grid, kind);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+void expect_same_spheres(const particles::Store& store, const Ownership& ownership, Rank rank,
+                         const oracle::Rsa& serial, GlobalId first_id) {
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const auto particle = static_cast<std::uint64_t>(store.ids()[static_cast<std::size_t>(i)] - first_id);
+    const auto found = std::ranges::lower_bound(serial.placed, particle, {}, &oracle::PlacedSphere::particle);
+    ASSERT_TRUE(found != serial.placed.end() && found->particle == particle) << "particle " << particle;
+    EXPECT_EQ(store.position(i), found->position)
+        << "particle " << particle << ", placed in attempt " << found->attempt;
+    EXPECT_EQ(store.radius(i), found->radius);
+    EXPECT_EQ(ownership.owner(ownership.grid().column(store.position(i))), rank);
+  }
+}
+
+// Runs the scene in every decomposition that these ranks allow.
+void expect_serial_result(const scene::Scene& scene, const rsa::LayerRegion& region) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const oracle::Rsa serial = oracle::insert(scene, region, static_cast<std::uint32_t>(scene.in.layers.attempts));
+  ASSERT_EQ(static_cast<std::int64_t>(serial.placed.size()), serial.asked) << "the case asks for too much";
+  int tried = 0;
+  for (const Decomposition kind : kinds) {
+    const auto ownership = try_ownership(comm, test::rsa_grid(scene), kind);
+    if (!ownership) continue;
+    ++tried;
+    particles::Store store(scene.features.layout());
+    const rsa::Insertion got = rsa::insert(comm, scene, *ownership, region, store);
+    EXPECT_EQ(got.asked, serial.asked);
+    EXPECT_EQ(got.inserted, serial.asked);
+    EXPECT_EQ(got.darts, serial.darts);
+    EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), serial.asked);
+    expect_same_spheres(store, *ownership, comm.rank(), serial, region.first_id);
+  }
+  EXPECT_GE(tried, 2);
+}
+
+constexpr std::array<bool, 2> walls{false, false};
+constexpr std::array<bool, 2> periodic{true, true};
+
+TEST(Insert, EqualSpheresBetweenWalls) {
+  expect_serial_result(rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.25, 10000), {0, 0.0, 0.4, 0});
+}
+
+TEST(Insert, EqualSpheresPeriodic) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    expect_serial_result(rsa_scene(3, {1.0, 0.8, 1.0}, periodic, equal_radius(0.04), 0.28, 10000, seed),
+                         {3, 0.37, 0.4, 1000});
+  }
+}
+
+TEST(Insert, GaussianSpheresMixedAxes) {
+  expect_serial_result(
+      rsa_scene(3, {0.9, 1.1, 1.0}, {true, false}, gaussian_radius(0.04, 0.004, 0.028, 0.052), 0.25, 10000),
+      {1, 0.1, 0.4, 7});
+}
+
+TEST(Insert, WidelyGradedSpheres) {
+  expect_serial_result(rsa_scene(3, {1.0, 1.0, 1.0}, {false, true}, uniform_radius(0.015, 0.045), 0.3, 10000),
+                       {0, 0.0, 0.25, 0});
+}
+
+// 5.4 of the paper: in the order of the indices its largest spheres find no room in a million darts.
+TEST(Insert, LayerOfThePaper) {
+  expect_serial_result(rsa_scene(3, {1.0, 1.0, 0.5}, walls, gaussian_radius(0.02, 0.002, 0.014, 0.026), 0.25, 10000),
+                       {0, 0.0, 0.1, 0});
+}
+
+TEST(Insert, NearlyFullOfSpheres) {
+  expect_serial_result(rsa_scene(3, {0.9, 0.9, 1.0}, periodic, equal_radius(0.04), 0.32, 100000), {0, 0.0, 0.8, 0});
+}
+
+TEST(Insert, DiscsBetweenWalls) {
+  expect_serial_result(rsa_scene(2, {3.0, 1.0, 0.0}, walls, equal_radius(0.03), 0.4, 10000), {0, 0.0, 0.5, 0});
+}
+
+TEST(Insert, GradedDiscsPeriodic) {
+  expect_serial_result(rsa_scene(2, {3.0, 1.0, 0.0}, periodic, gaussian_radius(0.03, 0.003, 0.021, 0.039), 0.42, 10000),
+                       {5, 2.5, 0.5, 500});
+}
+
+TEST(Insert, NearlyFullOfDiscs) {
+  expect_serial_result(rsa_scene(2, {3.0, 1.0, 0.0}, periodic, equal_radius(0.03), 0.49, 100000), {0, 0.0, 1.0, 0});
+}
+
+TEST(Insert, FewParticles) {
+  expect_serial_result(rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.002, 10), {0, 0.0, 0.4, 0});
+}
+
+TEST(Insert, SparseLayerUsesWideCells) {
+  expect_serial_result(rsa_scene(3, {4.0, 4.0, 1.0}, periodic, equal_radius(0.02), 0.001, 10), {0, 0.0, 1.0, 0});
+}
+
+TEST(Insert, GivesVelocityAndAppends) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.1, 100);
+  const Ownership ownership(comm, test::rsa_grid(scene), Decomposition::metis);
+  particles::Store store(scene.features.layout());
+  const rsa::Insertion first = rsa::insert(comm, scene, ownership, {0, 0.0, 0.4, 0}, store);
+  const rsa::Insertion second = rsa::insert(comm, scene, ownership, {1, 0.4, 0.4, first.inserted}, store);
+  EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), first.inserted + second.inserted);
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    EXPECT_EQ(store.velocity(i), scene.in.layers.velocity);
+    const bool upper = store.ids()[static_cast<std::size_t>(i)] >= first.inserted;
+    EXPECT_EQ(store.position(i)[2] > 0.4, upper);
+  }
+}
+
+// The complaint of insert(), checked to be the same on all ranks.
+std::string complaint(const scene::Scene& scene, const rsa::LayerRegion& region, Decomposition kind) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const Ownership ownership(comm, test::rsa_grid(scene), kind);
+  particles::Store store(scene.features.layout());
+  std::string words;
+  try {
+    (void)rsa::insert(comm, scene, ownership, region, store);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    words = error.what();
+  }
+  EXPECT_FALSE(words.empty());
+  EXPECT_EQ(comm.broadcast(0, words), words);
+  return words;
+}
+
+TEST(GiveUp, AfterTheAttemptsAllowed) {
+  const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, periodic, equal_radius(0.04), 0.3, 12);
+  const rsa::LayerRegion region{2, 0.0, 0.4, 0};
+  const oracle::Rsa serial = oracle::insert(scene, region, 12);
+  ASSERT_LT(static_cast<std::int64_t>(serial.placed.size()), serial.asked);
+  const double volume = static_cast<double>(serial.placed.size()) * 4.0 / 3.0 * 3.14159265358979 * 0.04 * 0.04 * 0.04;
+  for (const Decomposition kind : {Decomposition::slab, Decomposition::metis}) {
+    EXPECT_THAT(complaint(scene, region, kind),
+                testing::StartsWith(fmt::format(
+                    "layer 2: random sequential addition placed {} of {} particles: solid fraction "
+                    "{:.4f} of the 0.3000 asked, after {} darts; it ended in 12 of 12 attempts a particle. Lower",
+                    serial.placed.size(), serial.asked, volume / (0.8 * 0.4), serial.darts)));
+  }
+}
+
+TEST(GiveUp, EarlyWhenTheRestCannotFit) {
+  const scene::Scene scene = rsa_scene(2, {3.0, 1.0, 0.0}, periodic, equal_radius(0.03), 0.8, 2000);
+  const rsa::LayerRegion region{0, 0.0, 1.0, 0};
+  const std::string words = complaint(scene, region, Decomposition::slab);
+  const std::size_t at = words.find("ended in ");
+  ASSERT_NE(at, std::string::npos) << words;
+  const int attempts = std::stoi(words.substr(at + 9));
+  EXPECT_LT(attempts, 1000);
+  const oracle::Rsa serial = oracle::insert(scene, region, static_cast<std::uint32_t>(attempts));
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.asked)));
+  EXPECT_THAT(words, testing::HasSubstr(
+                         fmt::format("after {} darts; it ended in {} of 2000 attempts", serial.darts, attempts)));
+}
+
+TEST(GiveUp, NamesTheSizeClass) {
+  const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, walls, uniform_radius(0.03, 0.05), 0.45, 50);
+  const rsa::LayerRegion region{0, 0.0, 0.4, 0};
+  const oracle::Rsa serial = oracle::insert(scene, region, 50);
+  const std::string words = complaint(scene, region, Decomposition::slab);
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.asked)));
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("after {} darts; it ended in 50 of 50 attempts", serial.darts)));
+  EXPECT_THAT(words, testing::ContainsRegex("at size class [2-8] of 8, from the largest down"));
+}
+
+TEST(GiveUp, LayerThinnerThanAParticle) {
+  const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.3, 12);
+  EXPECT_THAT(complaint(scene, {0, 0.0, 0.079, 0}, Decomposition::slab),
+              testing::HasSubstr("layers.thickness = 0.079 m"));
+}
+
+}  // namespace
+}  // namespace packmpi
