@@ -101,7 +101,7 @@ void Neighborhood::migrate(particles::Store& store) const {
     parcel->bytes.insert(parcel->bytes.end(), body, body + record);
   }
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing));
-  if (staying.size() < static_cast<std::size_t>(store.owned())) store.reorder(staying);
+  if (staying.size() < static_cast<std::size_t>(store.owned())) store.keep(staying);
   std::vector<double> body(static_cast<std::size_t>(store.layout().stride));
   for (const comm::Parcel& parcel : incoming) {
     for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(GlobalId) + record) {
@@ -136,13 +136,13 @@ void Neighborhood::sort_owned(particles::Store& store) {
   for (std::size_t i = 0; i < owned; ++i) {
     order[static_cast<std::size_t>(next[static_cast<std::size_t>(cell[i])]++)] = static_cast<LocalIndex>(i);
   }
-  store.reorder(order);
+  store.permute(order);
 }
 
 std::vector<Sends> Neighborhood::choose_sends(const particles::Store& store) const {
   std::vector<Sends> sends;
   for (const Rank rank : ownership_->neighbors()) sends.push_back({rank, {}});
-  const double range = scene_->column_width() * (1.0 + 1e-12);   // distance() is rounded
+  const double range = scene_->column_width() * (1.0 + 1e-12);  // distance() is rounded
   const auto levels = static_cast<std::size_t>(cells_.levels);
   for (const LocalColumns::Border& border : columns_.borders()) {
     std::vector<LocalIndex>& slots = std::ranges::find(sends, border.rank, &Sends::rank)->slots;

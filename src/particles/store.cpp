@@ -1,10 +1,12 @@
 #include "particles/store.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstring>
 #include <limits>
 #include <new>
+#include <utility>
 
 namespace packmpi::particles {
 namespace {
@@ -14,23 +16,37 @@ constexpr std::size_t padding = alignment / sizeof(double);  // doubles
 
 std::size_t allocated(std::size_t capacity) { return (capacity + padding) * sizeof(double); }
 
-/// The stride known to the compiler makes each copy a few vector moves.
+/// Follows each cycle of the permutation once: `from` moves to `cur`, and so on round. Done slots are marked by
+/// order[i] = i. The stride known to the compiler makes each copy a few vector moves.
 template <int Stride>
-void gather(const double* from, std::span<const LocalIndex> order, double* to) {
-  for (const LocalIndex i : order) {
-    std::memcpy(to, from + static_cast<std::ptrdiff_t>(i) * Stride, sizeof(double) * Stride);
-    to += Stride;
+void permute_cycles(std::span<LocalIndex> order, double* records, std::span<GlobalId> ids) {
+  const auto at = [records](LocalIndex i) { return records + static_cast<std::ptrdiff_t>(i) * Stride; };
+  std::array<double, Stride> first;
+  for (std::size_t begin = 0; begin < order.size(); ++begin) {
+    auto cur = static_cast<LocalIndex>(begin);
+    if (order[begin] == cur) continue;
+    std::memcpy(first.data(), at(cur), sizeof first);
+    const GlobalId first_id = ids[begin];
+    for (;;) {
+      const LocalIndex from = std::exchange(order[static_cast<std::size_t>(cur)], cur);
+      if (from == static_cast<LocalIndex>(begin)) break;
+      std::memcpy(at(cur), at(from), sizeof first);
+      ids[static_cast<std::size_t>(cur)] = ids[static_cast<std::size_t>(from)];
+      cur = from;
+    }
+    std::memcpy(at(cur), first.data(), sizeof first);
+    ids[static_cast<std::size_t>(cur)] = first_id;
   }
 }
 
-void gather(int stride, const double* from, std::span<const LocalIndex> order, double* to) {
+void permute_cycles(int stride, std::span<LocalIndex> order, double* records, std::span<GlobalId> ids) {
   switch (stride) {
     case 6:
-      return gather<6>(from, order, to);
+      return permute_cycles<6>(order, records, ids);
     case 8:
-      return gather<8>(from, order, to);
+      return permute_cycles<8>(order, records, ids);
     case 12:
-      return gather<12>(from, order, to);
+      return permute_cycles<12>(order, records, ids);
     default:
       assert(false && "a stride that layout_of() never gives");
   }
@@ -108,21 +124,26 @@ void Store::set_ghosts(LocalIndex count) {
   ids_.resize(static_cast<std::size_t>(total()));
 }
 
-void Store::reorder(std::span<const LocalIndex> order) {
-  assert(order.size() <= static_cast<std::size_t>(owned_));
-  scratch_.resize(order.size() * static_cast<std::size_t>(layout_.stride));
-  gather(layout_.stride, records_.data(), order, scratch_.data());
-  scratch_ids_.resize(order.size());
-  std::transform(order.begin(), order.end(), scratch_ids_.begin(),
-                 [this](LocalIndex i) { return ids_[static_cast<std::size_t>(i)]; });
-  records_.swap(scratch_);
-  ids_.swap(scratch_ids_);
-  owned_ = static_cast<LocalIndex>(order.size());
-  ghosts_ = 0;
+void Store::keep(std::span<const LocalIndex> kept) {
+  assert(std::ranges::is_sorted(kept));
+  LocalIndex next = 0;
+  for (const LocalIndex from : kept) {
+    if (from != next) {
+      std::memcpy(record(next), record(from), layout_.record_bytes());
+      ids_[static_cast<std::size_t>(next)] = ids_[static_cast<std::size_t>(from)];
+    }
+    ++next;
+  }
+  owned_ = next;
+  set_ghosts(0);
 }
 
-std::size_t Store::bytes() const noexcept {
-  return records_.bytes() + scratch_.bytes() + (ids_.capacity() + scratch_ids_.capacity()) * sizeof(GlobalId);
+void Store::permute(std::span<LocalIndex> order) {
+  assert(order.size() == static_cast<std::size_t>(owned_));
+  set_ghosts(0);
+  permute_cycles(layout_.stride, order, records_.data(), ids_);
 }
+
+std::size_t Store::bytes() const noexcept { return records_.bytes() + ids_.capacity() * sizeof(GlobalId); }
 
 }  // namespace packmpi::particles

@@ -67,9 +67,11 @@ class Store {
   void add_record(GlobalId id, const double* record);
   /// Make room for `count` ghosts; their contents are not set.
   void set_ghosts(LocalIndex count);
-  /// Keep the owned particles order[0], order[1], ... in that order, each at most once; drops the others and all
-  /// ghosts. Cost: one pass over the records; no allocation once it has been called.
-  void reorder(std::span<const LocalIndex> order);
+  /// Keep the owned particles in the slots `kept` (ascending) and drop the others and all ghosts. In place.
+  void keep(std::span<const LocalIndex> kept);
+  /// Put the owned particles into the order order[0], order[1], ... (each slot once) and drop all ghosts. In place, so
+  /// that no second copy of the particles is ever held; `order` is used up. Cost: one pass over the records.
+  void permute(std::span<LocalIndex> order);
   /// Bytes allocated for the particles.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -81,9 +83,7 @@ class Store {
   LocalIndex owned_ = 0;
   LocalIndex ghosts_ = 0;
   AlignedDoubles records_;
-  AlignedDoubles scratch_;  // the other buffers of reorder()
   std::vector<GlobalId> ids_;
-  std::vector<GlobalId> scratch_ids_;
 };
 
 /// A number that names the state of the owned particles: the sum mod 2^64 over them of a hash of id and the bits of the

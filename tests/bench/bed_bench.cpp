@@ -1,0 +1,130 @@
+// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [spread = 0]
+//
+// The whole step loop (kernel, walls, ghosts, rebuild tests, rebuilds) on a settled bed of the paper's spheres
+// (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways to
+// about the asked number, and advanced. Prints particle-steps a second and core, median and spread over the runs, and
+// bytes a particle on the worst rank. `spread` is the half width of uniform radii about 0.02 m, as a share (0: equal).
+#include <fmt/core.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "comm/session.hpp"
+#include "observe/measure.hpp"
+#include "rsa/insert.hpp"
+#include "run/pile.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi {
+namespace {
+
+constexpr double radius = 0.02;     // [m]
+constexpr double brick_side = 0.5;  // [m] of the settled brick
+constexpr int brick_layers = 12;
+
+input::Input material(double side, bool rotation, double spread) {
+  input::Input in = test::periodic(test::small_input(3, side, radius));
+  if (spread > 0.0) {
+    in.particles.radius.distribution = input::SizeDistribution::uniform;
+    in.particles.radius.min = radius * (1.0 - spread);
+    in.particles.radius.max = radius * (1.0 + spread);
+  }
+  in.container.size = {side, side, 0.5};
+  in.layers.thickness = 0.1;
+  in.layers.fraction = 0.24;
+  in.layers.attempts = 100000;
+  in.drag.coefficient = 0.005;
+  in.dynamics.rotation = rotation;
+  in.dynamics.time_step = 1e-4;
+  return in;
+}
+
+// One particle of the brick.
+struct Grain {
+  Vec3 x;
+  double r;
+};
+
+// The settled brick on every rank (each packs its own: a serial communicator).
+std::vector<Grain> settled_brick(const input::Input& in) {
+  const comm::Comm self(MPI_COMM_SELF);
+  const scene::Scene scene = scene::build(in);
+  run::Pile pile(self, scene);
+  for (int layer = 0; layer < brick_layers; ++layer) {
+    pile.store.set_ghosts(0);
+    const rsa::LayerRegion region{static_cast<std::uint32_t>(layer), observe::top(self, pile.store, scene),
+                                  in.layers.thickness, pile.count};
+    pile.count += rsa::insert(self, scene, pile.ownership, region, pile.store).inserted;
+    pile.neighborhood.rebuild(pile.store);
+    pile.stepper.advance(pile.store, pile.neighborhood, 6000);
+  }
+  std::vector<Grain> grains;
+  for (LocalIndex i = 0; i < pile.store.owned(); ++i) grains.push_back({pile.store.position(i), pile.store.radius(i)});
+  return grains;
+}
+
+// Tiles the brick over the columns of this rank.
+void lay_out(run::Pile& pile, const std::vector<Grain>& brick, int tiles) {
+  GlobalId id = 0;
+  for (int ty = 0; ty < tiles; ++ty) {
+    for (int tx = 0; tx < tiles; ++tx) {
+      for (const Grain& grain : brick) {
+        const Vec3 x{grain.x[0] + brick_side * tx, grain.x[1] + brick_side * ty, grain.x[2]};
+        if (pile.ownership.owner(pile.ownership.grid().column(x)) == pile.comm.rank())
+          pile.store.add(id, x, grain.r, {}, {});
+        ++id;
+      }
+    }
+  }
+  pile.count = id;
+  pile.neighborhood.rebuild(pile.store);
+}
+
+void measure(run::Pile& pile, std::int64_t steps, int runs) {
+  std::vector<double> rates;
+  const std::int64_t rebuilds = pile.neighborhood.rebuilds();
+  for (int k = 0; k < runs; ++k) {
+    pile.comm.barrier();
+    const double start = MPI_Wtime();
+    pile.stepper.advance(pile.store, pile.neighborhood, steps);
+    const double seconds = pile.comm.max(MPI_Wtime() - start);
+    rates.push_back(static_cast<double>(pile.count) * static_cast<double>(steps) / seconds / pile.comm.size());
+  }
+  std::ranges::sort(rates);
+  const observe::Contacts contacts =
+      observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
+  const double bytes = pile.bytes_per_particle();
+  if (pile.comm.rank() != 0) return;
+  fmt::print(
+      "{} particles on {} ranks ({}), coordination {:.2f}, {:.2f} listed pairs a particle, {} rebuilds in {} steps\n",
+      pile.count, pile.comm.size(), dynamics::kernel_architecture(), contacts.coordination,
+      static_cast<double>(pile.neighborhood.pairs().first.size()) / pile.store.owned(),
+      pile.neighborhood.rebuilds() - rebuilds, steps * runs);
+  fmt::print("particle-steps/s a core: median {:.2f}e6, least {:.2f}e6, most {:.2f}e6; {:.0f} bytes a particle\n",
+             rates[rates.size() / 2] * 1e-6, rates.front() * 1e-6, rates.back() * 1e-6, bytes);
+}
+
+}  // namespace
+}  // namespace packmpi
+
+int main(int argc, char** argv) {
+  using namespace packmpi;
+  const comm::Session session(argc, argv);
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const double particles = argc > 1 ? std::atof(argv[1]) : 107000.0;
+  const auto steps = static_cast<std::int64_t>(argc > 2 ? std::atof(argv[2]) : 300.0);
+  const int runs = argc > 3 ? std::atoi(argv[3]) : 5;
+  const bool rotation = argc > 4 ? std::atoi(argv[4]) != 0 : true;
+  const double spread = argc > 5 ? std::atof(argv[5]) : 0.0;
+  const std::vector<Grain> brick = settled_brick(material(brick_side, rotation, spread));
+  const int tiles =
+      std::max(1, static_cast<int>(std::lround(std::sqrt(particles / static_cast<double>(brick.size())))));
+  const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, spread));
+  run::Pile pile(comm, scene);
+  lay_out(pile, brick, tiles);
+  pile.stepper.advance(pile.store, pile.neighborhood, 1000);  // small tiles' seams and the first rebuilds
+  measure(pile, steps, runs);
+  return 0;
+}
