@@ -1,6 +1,7 @@
 // The Verlet lists from the sorted cells: the hot part of a rebuild.
 #include <algorithm>
 
+#include "base/grow.hpp"
 #include "neighbor/neighborhood.hpp"
 
 namespace packmpi::neighbor {
@@ -82,7 +83,10 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
         candidates += static_cast<std::size_t>(cells_.start[at + high] - cells_.start[at + low]);
       }
       for (LocalIndex i = cells_.start[column + k]; i < cells_.start[column + k + 1]; ++i) {
-        if (list.second.size() < size + candidates) list.second.resize((size + candidates) * 9 / 8 + 1024);
+        if (list.second.size() < size + candidates) {
+          resize_tightly(list.second, size + candidates + 4096);
+          list.second.resize(list.second.capacity());
+        }
         LocalIndex* const begin = list.second.data() + size;
         LocalIndex* out = find_in(s, i, i + 1, own_end, begin);
         for (const int other : columns_.forward(c)) {
@@ -90,7 +94,10 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
           out = find_in(s, i, cells_.start[at + low], cells_.start[at + high], out);
         }
         const auto found = static_cast<std::size_t>(out - begin);
-        if (list.first.size() < list.second.size()) list.first.resize(list.second.size());
+        if (list.first.size() < size + found) {
+          resize_tightly(list.first, size + found + 4096);
+          list.first.resize(list.first.capacity());
+        }
         std::fill_n(list.first.data() + size, found, i);
         for (const LocalIndex* j = begin; j < out; ++j) {
           if (*j < store.owned()) window = std::max(window, *j - i + 1);

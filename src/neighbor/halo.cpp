@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 
+#include "base/grow.hpp"
 #include "comm/datatype.hpp"
 
 namespace packmpi::neighbor {
@@ -108,9 +109,9 @@ void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
                         nullptr, PETSC_OWN_POINTER, origin.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(graph_->sf));
   const auto live = static_cast<std::size_t>(layout_.live_doubles());
-  send_buffer_.resize(send_slots_.size() * live);
-  receive_buffer_.resize(origin.size() * live);
-  arrival_slot_.resize(origin.size());
+  resize_tightly(send_buffer_, send_slots_.size() * live);
+  resize_tightly(receive_buffer_, origin.size() * live);
+  resize_tightly(arrival_slot_, origin.size());
   for (std::size_t k = 0; k < origin.size(); ++k) arrival_slot_[k] = store.owned() + static_cast<LocalIndex>(k);
 }
 

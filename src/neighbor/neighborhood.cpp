@@ -7,6 +7,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "base/grow.hpp"
+
 namespace packmpi::neighbor {
 namespace {
 
@@ -182,11 +184,11 @@ void Neighborhood::remember_positions(const particles::Store& store) {
   const auto total = static_cast<std::size_t>(store.total());
   for (int a = 0; a < scene_->box.dimension; ++a) {
     std::vector<double>& x = x_[static_cast<std::size_t>(a)];
-    x.resize(total);
+    resize_tightly(x, total);
     for (std::size_t i = 0; i < total; ++i) x[i] = store.record(static_cast<LocalIndex>(i))[a];
   }
   if (!scene_->features.graded) return;
-  radius_.resize(total);
+  resize_tightly(radius_, total);
   for (std::size_t i = 0; i < total; ++i) radius_[i] = store.radius(static_cast<LocalIndex>(i));
 }
 

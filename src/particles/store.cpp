@@ -8,6 +8,8 @@
 #include <new>
 #include <utility>
 
+#include "base/grow.hpp"
+
 namespace packmpi::particles {
 namespace {
 
@@ -113,15 +115,16 @@ void Store::add_record(GlobalId id, const double* record) {
   const std::size_t at = offset(owned_);
   records_.resize(at + static_cast<std::size_t>(layout_.stride));
   std::memcpy(records_.data() + at, record, layout_.record_bytes());
-  ids_.push_back(id);
   ++owned_;
+  resize_tightly(ids_, static_cast<std::size_t>(owned_));
+  ids_.back() = id;
 }
 
 void Store::set_ghosts(LocalIndex count) {
   assert(count >= 0 && count <= std::numeric_limits<LocalIndex>::max() - owned_);
   ghosts_ = count;
   records_.resize(offset(total()));
-  ids_.resize(static_cast<std::size_t>(total()));
+  resize_tightly(ids_, static_cast<std::size_t>(total()));
 }
 
 void Store::keep(std::span<const LocalIndex> kept) {
