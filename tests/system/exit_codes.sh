@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Every exit code of the program, with the words that go with it, and what is on disk afterwards.
+# usage: exit_codes.sh INPUT_FOLDER SCRATCH_FOLDER command ...      (command: mpirun -n N packmpi)
+set -u
+input=$1
+scratch=$2
+shift 2
+failures=0
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch" || exit 1
+# A pile of a few dozen spheres in a second or less.
+tiny=("$input/quickstart.toml" --set 'container.size=[0.3,0.3,0.05]' --set layers.duration=0.02)
+
+# expect CODE WORDS argument ...: the program's exit code, and WORDS (an extended regular expression) in what it prints.
+expect() {
+  local code=$1 words=$2 text got
+  shift 2
+  text=$("${command[@]}" "$@" 2>&1)
+  got=$?
+  if [[ $got -ne $code ]] || ! grep -Eq -- "$words" <<<"$text"; then
+    failures=$((failures + 1))
+    printf 'exit code %s, expected %s with "%s": %s\n%s\n' "$got" "$code" "$words" "$*" "$text"
+  fi
+}
+must() { "$@" || { failures=$((failures + 1)); echo "not true: $*"; }; }
+command=("$@")
+
+expect 0 '^packmpi [0-9]' --version
+expect 0 'packmpi check SCENE.toml' --help
+expect 2 'SCENE.toml is required' run
+expect 2 'no-such.toml' no-such.toml
+expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
+expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
+expect 0 'is sound' check "${tiny[@]}"
+must test -z "$(ls -A)"                                    # nothing was written so far
+
+expect 0 'stopped because +height' "${tiny[@]}" -o out -q
+for file in quickstart.hdf quickstart.json quickstart.log quickstart.steps.csv; do must test -s out/$file; done
+must test -z "$(find out -name '*.tmp*')"
+before=$(md5sum out/*)
+expect 2 'quickstart.hdf exists; use --force' "${tiny[@]}" -o out -q
+must test "$before" = "$(md5sum out/*)"                    # not a byte was touched
+expect 0 'height' "${tiny[@]}" -o out -q --force
+
+expect 3 'layers.maximum' "${tiny[@]}" -o short -q --set layers.maximum=1 --set 'container.size=[0.3,0.3,0.4]'
+must test -s short/quickstart.hdf                          # a missed target still leaves its pack
+expect 2 'random sequential addition placed' "${tiny[@]}" -o full -q --set layers.fraction=0.38 --set layers.attempts=50
+must test ! -e full/quickstart.hdf
+# Particles too soft for their weight are pressed through the floor: the run names one and leaves no pack.
+expect 4 'particle [0-9]+ left the container: position .*use a smaller dynamics.time_step or softer|blew up' "${tiny[@]}" -o blown -q \
+  --set particles.youngs_modulus=1e4 --set jamming.gravity=2000
+must test ! -e blown/quickstart.hdf
+
+expect 5 'Not a directory|not a directory' "${tiny[@]}" -o out/quickstart.json/sub -q
+if mkdir disk && mount -t tmpfs -o size=256k tmpfs disk 2>/dev/null; then
+  expect 5 'space|room' "${tiny[@]}" -o disk -q --set 'container.size=[1.2,1.2,0.2]'
+  must test -z "$(find disk -name '*.hdf*')"
+  umount disk
+else
+  echo "mounting is not allowed here: the full disk was not tried"
+fi
+[[ $failures -eq 0 ]] && echo "all exit codes as they should be"
+exit $((failures > 0))

@@ -1,0 +1,16 @@
+# Every scene of input/, scaled down, on one and two ranks; and every exit code.
+set(input ${PROJECT_SOURCE_DIR}/input)
+set(short --set layers.duration=0.005 --set layers.maximum=2 --set output.log_every=0.005)
+file(GLOB scenes CONFIGURE_DEPENDS ${input}/*.toml)
+foreach(scene IN LISTS scenes)
+  get_filename_component(name ${scene} NAME_WE)
+  packmpi_system_test(scene_${name} RANKS 2 COMMAND ${scene} -q ${short} EXIT 3
+    MATCHES "stopped because +layers.maximum" FILES ${name}.hdf ${name}.json ${name}.log ${name}.steps.csv)
+endforeach()
+foreach(ranks 1 2)
+  add_test(NAME system/exit_codes.np${ranks} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/exit_codes.sh ${input}
+    ${CMAKE_CURRENT_BINARY_DIR}/exit_codes.np${ranks}
+    ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:packmpi_program>)
+  set_tests_properties(system/exit_codes.np${ranks} PROPERTIES PROCESSORS ${ranks} TIMEOUT 180
+    ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS "system;np${ranks}")
+endforeach()
