@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
-# usage: scripts/setup.sh [--plots] [--render] [--checks]
+# usage: scripts/setup.sh [--plots] [--render] [--checks] [--peers]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
+#   --peers   also LAMMPS, to compare with
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
 #   --checks  also clang-tidy and clang-format, for scripts/check.sh
 set -euo pipefail
@@ -12,6 +13,7 @@ packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpet
 for option in "$@"; do
   case $option in
     --plots) packages+=(python3 python3-h5py python3-matplotlib) ;;
+    --peers) packages+=(python3 lammps) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
     --checks) packages+=(clang clang-tidy clang-format) ;;
     *) sed -n '2,6s/^# //p' "$0" >&2; exit 2 ;;

@@ -1,15 +1,18 @@
-// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [spread = 0]
+// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [spread = 0] [data file]
 //
 // The whole step loop (kernel, walls, ghosts, rebuild tests, rebuilds) on a settled bed of the paper's spheres
-// (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways to
-// about the asked number, and advanced. Prints particle-steps a second and core, median and spread over the runs, and
-// bytes a particle on the worst rank. `spread` is the half width of uniform radii about 0.02 m, as a share (0: equal).
+// (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways
+// between walls to about the asked number, and advanced. Prints particle-steps a second and core, median and spread
+// over the runs, and bytes a particle on the worst rank. With a data file (one rank), the bed is also written there as
+// LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/compare.py). `spread` is the half width
+// of uniform radii about 0.02 m, as a share (0: equal).
 #include <fmt/core.h>
 #include <mpi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 
 #include "comm/session.hpp"
 #include "observe/measure.hpp"
@@ -25,7 +28,7 @@ constexpr double brick_side = 0.5;  // [m] of the settled brick
 constexpr int brick_layers = 12;
 
 input::Input material(double side, bool rotation, double spread) {
-  input::Input in = test::periodic(test::small_input(3, side, radius));
+  input::Input in = test::small_input(3, side, radius);
   if (spread > 0.0) {
     in.particles.radius.distribution = input::SizeDistribution::uniform;
     in.particles.radius.min = radius * (1.0 - spread);
@@ -65,21 +68,35 @@ std::vector<Grain> settled_brick(const input::Input& in) {
   return grains;
 }
 
-// Tiles the brick over the columns of this rank.
+// Tiles the brick over the columns of this rank, without what would stand in the side walls.
 void lay_out(run::Pile& pile, const std::vector<Grain>& brick, int tiles) {
+  const double side = brick_side * tiles;
   GlobalId id = 0;
-  for (int ty = 0; ty < tiles; ++ty) {
-    for (int tx = 0; tx < tiles; ++tx) {
-      for (const Grain& grain : brick) {
-        const Vec3 x{grain.x[0] + brick_side * tx, grain.x[1] + brick_side * ty, grain.x[2]};
-        if (pile.ownership.owner(pile.ownership.grid().column(x)) == pile.comm.rank())
-          pile.store.add(id, x, grain.r, {}, {});
-        ++id;
+  for (int tile = 0; tile < tiles * tiles; ++tile) {
+    for (const Grain& grain : brick) {
+      const Vec3 x{grain.x[0] + brick_side * (tile % tiles), grain.x[1] + brick_side * (tile / tiles), grain.x[2]};
+      if (std::min(x[0], x[1]) < grain.r || std::max(x[0], x[1]) > side - grain.r) continue;
+      if (pile.ownership.owner(pile.ownership.grid().column(x)) == pile.comm.rank()) {
+        pile.store.add(id, x, grain.r, {}, {});
       }
+      ++id;
     }
   }
   pile.count = id;
   pile.neighborhood.rebuild(pile.store);
+}
+
+// The bed as a LAMMPS data file of style sphere.
+void write_data(const run::Pile& pile, const char* path) {
+  std::ofstream out(path);
+  const double side = pile.scene.box.size[0];
+  out << "bed of packmpi: units si\n\n" << pile.count << " atoms\n1 atom types\n\n";
+  out << fmt::format("-0.005 {0} xlo xhi\n-0.005 {0} ylo yhi\n-0.005 0.8 zlo zhi\n\nAtoms\n\n", side + 0.005);
+  for (LocalIndex i = 0; i < pile.store.owned(); ++i) {
+    const Vec3 x = pile.store.position(i);
+    out << fmt::format("{} 1 {:.17g} 1000 {:.17g} {:.17g} {:.17g}\n", pile.store.ids()[static_cast<std::size_t>(i)] + 1,
+                       2.0 * pile.store.radius(i), x[0], x[1], x[2]);
+  }
 }
 
 void measure(run::Pile& pile, std::int64_t steps, int runs) {
@@ -118,13 +135,14 @@ int main(int argc, char** argv) {
   const int runs = argc > 3 ? std::atoi(argv[3]) : 5;
   const bool rotation = argc > 4 ? std::atoi(argv[4]) != 0 : true;
   const double spread = argc > 5 ? std::atof(argv[5]) : 0.0;
-  const std::vector<Grain> brick = settled_brick(material(brick_side, rotation, spread));
+  const std::vector<Grain> brick = settled_brick(test::periodic(material(brick_side, rotation, spread)));
   const int tiles =
       std::max(1, static_cast<int>(std::lround(std::sqrt(particles / static_cast<double>(brick.size())))));
   const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, spread));
   run::Pile pile(comm, scene);
   lay_out(pile, brick, tiles);
   pile.stepper.advance(pile.store, pile.neighborhood, 1000);  // small tiles' seams and the first rebuilds
+  if (argc > 6 && comm.size() == 1) write_data(pile, argv[6]);
   measure(pile, steps, runs);
   return 0;
 }

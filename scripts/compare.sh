@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs LAMMPS, builds everything, and compares packmpi with it on the same scenes: see scripts/compare.py.
+# usage: scripts/compare.sh [options of compare.py]
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+"$here/setup.sh" --peers
+"$here/build.sh" all
+exec "$here/compare.py" --build "${BUILD:-$here/../build}" "$@"
