@@ -13,6 +13,8 @@ struct Memory {
   static constexpr int stride = layout.stride;
   static constexpr int chunks = layout.dimension == 3 && layout.rotation ? 3 : 2;  // vectors of four a record
   static constexpr int accumulators = accumulators_of(layout);
+  static constexpr int forces = F.dimension == 2 && F.rotation ? 3 : F.dimension;  // in 2D the moment is the third
+  static constexpr int moments = accumulators == 8 ? 3 : 0;                        // from the fifth
 
   /// Is this offset of a record subtracted (position, velocity) when a pair is formed, or added (radius, spin, ...)?
   static constexpr bool differs(int offset) {
@@ -115,7 +117,8 @@ PACKMPI_INLINE void pack(const double* records, Block& b) {
       i[e] = records + std::int64_t{b.first[p + e]} * stride;
       j[e] = records + std::int64_t{b.second[p + e]} * stride;
     }
-    __builtin_prefetch(i[0] + ahead * stride, 1, 2);
+    __builtin_prefetch(i[0] + ahead * stride);  // a record spans two lines
+    __builtin_prefetch(i[0] + ahead * stride + 8);
     for (int chunk = 0; chunk < M::chunks; ++chunk) {
       const BitLanes sign = M::signs(chunk);
       Lanes pair[4];
@@ -133,8 +136,8 @@ PACKMPI_INLINE void pack(const double* records, Block& b) {
 template <Features F>
 PACKMPI_INLINE void scatter(std::int64_t* ring, Block& b) {
   constexpr int accumulators = Memory<F>::accumulators;
-  constexpr int forces = F.dimension == 2 && F.rotation ? 3 : F.dimension;  // in 2D the moment is the third
-  constexpr int moments = accumulators == 8 ? 3 : 0;
+  constexpr int forces = Memory<F>::forces;
+  constexpr int moments = Memory<F>::moments;
   constexpr std::uint64_t minus = 0xffffffffffffffff;
   constexpr BitLanes flip = {minus, minus, F.dimension == 3 ? minus : 0, 0};
   for (int p = 0; p < b.filled; p += 4) {

@@ -39,7 +39,8 @@ template <Features F>
 PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block& b, Tally& tally,
                               std::int64_t from, std::int64_t to) {
   constexpr int accumulators = Memory<F>::accumulators;
-  constexpr int forces = F.dimension == 2 && F.rotation ? 3 : F.dimension;
+  constexpr int forces = Memory<F>::forces;
+  constexpr int moments = Memory<F>::moments;
   while (from < to) {
     const int count = to - from < Block::size ? static_cast<int>(to - from) : Block::size;
     b.filled = (count + 7) & ~7;
@@ -51,10 +52,12 @@ PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double s
     tally.wall_force = largest(b.strength, b.filled, tally.wall_force);
     for (int p = 0; p < count; ++p) {
       std::int64_t* sum = data.ring + (data.wall_particle[from + p] & data.ring_mask) * accumulators;
-      for (int a = 0; a < forces; ++a) sum[a] += b.out[a][p];
-      if constexpr (accumulators == 8) {
-        for (int a = 4; a < 7; ++a) sum[a] += b.out[a][p];
-      }
+      const auto add = [&](int a) {  // wraps: a force out of range is garbage, not undefined
+        sum[a] =
+            static_cast<std::int64_t>(static_cast<std::uint64_t>(sum[a]) + static_cast<std::uint64_t>(b.out[a][p]));
+      };
+      for (int a = 0; a < forces; ++a) add(a);
+      for (int a = 0; a < moments; ++a) add(4 + a);
     }
     from += count;
   }

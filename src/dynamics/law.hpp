@@ -6,22 +6,22 @@ namespace packmpi::dynamics {
 
 /// Constants of one kind of contact: particle-particle or particle-wall.
 struct LawConstants {
-  double stiffness;        ///< 4/3 E* [Pa]; normal elastic force = stiffness * sqrt(r* delta) * delta
-  double damping;          ///< 2 xi sqrt(2 E*): d* = damping * sqrt(m* sqrt(r* delta))
-  double friction;         ///< mu_d [-]
-  double reduced_radius;   ///< r* [m], equal radii only; graded contacts compute theirs
-  double reduced_mass;     ///< m* [kg], equal radii only
+  double stiffness;       ///< 4/3 E* [Pa]; normal elastic force = stiffness * sqrt(r* delta) * delta
+  double damping;         ///< 2 xi sqrt(2 E*): d* = damping * sqrt(m* sqrt(r* delta))
+  double friction;        ///< mu_d [-]
+  double reduced_radius;  ///< r* [m], equal radii only; graded contacts compute theirs
+  double reduced_mass;    ///< m* [kg], equal radii only
 };
 
 /// What the whole scene's contacts share.
 struct Law {
   LawConstants pair;
-  LawConstants wall;       ///< r* = r_i, m* = m_i; rigid: E* = E/(1 - nu^2); material: as a pair
-  double mass_factor;      ///< 3 / (4 pi rho): 1/m = mass_factor * k^3, k = 1/r
-  double spin_slip;        ///< 1: slip at the contact point includes spin; 0: centre velocities only (literal eq. 14)
-  double slip_rate;        ///< 1/time_step ("stop"), 1/slip_time ("viscous"), or a huge number ("none") [1/s]
-  double slip_mass;        ///< m_t / m*: 2/7 with rotation and contact velocities, else 1
-  double lowest_force;     ///< 0 with the tension cut-off, else -infinity [N]
+  LawConstants wall;    ///< r* = r_i, m* = m_i; rigid: E* = E/(1 - nu^2); material: as a pair
+  double mass_factor;   ///< 3 / (4 pi rho): 1/m = mass_factor * k^3, k = 1/r
+  double spin_slip;     ///< 1: slip at the contact point includes spin; 0: centre velocities only (literal eq. 14)
+  double slip_rate;     ///< 1/time_step ("stop"), 1/slip_time ("viscous"), or a huge number ("none") [1/s]
+  double slip_mass;     ///< m_t / m*: 2/7 with rotation and contact velocities, else 1
+  double lowest_force;  ///< 0 with the tension cut-off, else -infinity [N]
 };
 
 /// The law of a scene, for its time step.

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -39,7 +38,7 @@ void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborh
 // The ring holds the window of the half list; with a near field, whose forces come first, it holds every particle.
 void Stepper::fit_ring(const particles::Store& store, const neighbor::Neighborhood& neighborhood) {
   const LocalIndex needed = scene_->features.near_field ? store.owned() : neighborhood.pairs().window;
-  const auto slots = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint32_t>(std::max(needed, 64))));
+  const std::int64_t slots = ring_slots(needed);
   if (slots <= ring_mask_ + 1 && ring_begin_ != nullptr) return;
   const auto each = static_cast<std::size_t>(accumulators_of(store.layout()));
   ring_.assign((static_cast<std::size_t>(slots) + 1) * each + alignment, 0);

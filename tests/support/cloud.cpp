@@ -47,7 +47,7 @@ void Cloud::fill(Dice& dice) {
   const particles::Layout layout = features.layout();
   const LocalIndex total = plan.owned + plan.ghosts;
   const double poison = std::numeric_limits<double>::quiet_NaN();  // in every place that holds no state
-  records.assign(static_cast<std::size_t>(total * layout.stride + 8), poison);
+  records.assign(static_cast<std::size_t>(total) * static_cast<std::size_t>(layout.stride) + 8, poison);
   for (LocalIndex i = 0; i < total; ++i) {
     double* p = records.data() + static_cast<std::ptrdiff_t>(i) * layout.stride;
     const double r = features.graded ? radius * dice(0.5, 1.5) : radius;
