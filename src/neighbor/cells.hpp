@@ -26,6 +26,8 @@ class LocalColumns {
   /// Columns touching own column `local` that a half list must visit: own ones with a higher number, and all ghost
   /// columns.
   [[nodiscard]] std::span<const int> forward(int local) const noexcept;
+  /// All columns touching own column `local`, own and ghost, without itself.
+  [[nodiscard]] std::span<const int> around(int local) const noexcept;
 
   /// A rank that needs particles of own column `local`, and the columns of its that touch it.
   struct Border {
@@ -38,12 +40,17 @@ class LocalColumns {
 
  private:
   void number_own(const scene::Ownership& ownership);
+  /// Place of a column in own_lookup_, by its coordinates in the bounding rectangle.
+  [[nodiscard]] std::size_t cell_of(int x, int y) const noexcept {
+    return static_cast<std::size_t>(x) + static_cast<std::size_t>(width_) * static_cast<std::size_t>(y);
+  }
   int own_ = 0;
   std::vector<geometry::ColumnIndex> global_;
   std::vector<std::pair<geometry::ColumnIndex, int>> ghost_lookup_;  // sorted
   std::vector<int> own_lookup_;  // dense over the bounding rectangle of the own columns; -1 elsewhere
   int x0_ = 0, y0_ = 0, width_ = 0, depth_ = 0, nx_ = 1;
   std::vector<int> forward_start_, forward_;
+  std::vector<int> around_start_, around_;
   std::vector<Border> borders_;
 };
 
@@ -51,11 +58,12 @@ class LocalColumns {
 /// + k + 1).
 struct Cells {
   int levels = 1;
+  double bottom = 0.0;            ///< [m] of the lowest level; what lies below it is in that level too
   double inverse_height = 0.0;    ///< [1/m] of a cell
   std::vector<LocalIndex> start;  ///< total columns * levels + 1
 
   [[nodiscard]] int level(double vertical) const noexcept {
-    const double k = vertical * inverse_height;
+    const double k = (vertical - bottom) * inverse_height;
     return k >= static_cast<double>(levels) ? levels - 1 : (k > 0.0 ? static_cast<int>(k) : 0);
   }
 };

@@ -10,6 +10,7 @@ LocalColumns::LocalColumns(const scene::Ownership& ownership, Rank rank) : nx_(o
   own_ = static_cast<int>(global_.size());
   std::vector<geometry::ColumnIndex> touching;
   std::vector<std::vector<int>> forward(static_cast<std::size_t>(own_));
+  around_start_.assign(1, 0);
   std::map<std::pair<Rank, int>, std::vector<geometry::ColumnIndex>> borders;
   for (int c = 0; c < own_; ++c) {
     ownership.grid().neighbors(global(c), touching);
@@ -22,7 +23,9 @@ LocalColumns::LocalColumns(const scene::Ownership& ownership, Rank rank) : nx_(o
         ghost_lookup_.insert(std::ranges::lower_bound(ghost_lookup_, std::pair{other, 0}), {other, number});
       }
       if (number > c) forward[static_cast<std::size_t>(c)].push_back(number);
+      around_.push_back(number);
     }
+    around_start_.push_back(static_cast<int>(around_.size()));
   }
   forward_start_.assign(1, 0);
   for (std::vector<int>& list : forward) {
@@ -50,7 +53,7 @@ void LocalColumns::number_own(const scene::Ownership& ownership) {
   }
   own_lookup_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(depth_), -1);
   for (std::size_t k = 0; k < global_.size(); ++k) {
-    own_lookup_[static_cast<std::size_t>(x(global_[k]) - x0_ + width_ * (y(global_[k]) - y0_))] = static_cast<int>(k);
+    own_lookup_[cell_of(x(global_[k]) - x0_, y(global_[k]) - y0_)] = static_cast<int>(k);
   }
 }
 
@@ -58,7 +61,7 @@ int LocalColumns::local(geometry::ColumnIndex column) const noexcept {
   const int x = static_cast<int>(column % nx_) - x0_;
   const int y = static_cast<int>(column / nx_) - y0_;
   if (x >= 0 && x < width_ && y >= 0 && y < depth_) {
-    const int found = own_lookup_[static_cast<std::size_t>(x + width_ * y)];
+    const int found = own_lookup_[cell_of(x, y)];
     if (found >= 0) return found;
   }
   const auto at = std::ranges::lower_bound(ghost_lookup_, std::pair{column, 0});
@@ -69,6 +72,12 @@ std::span<const int> LocalColumns::forward(int local) const noexcept {
   const auto c = static_cast<std::size_t>(local);
   return std::span(forward_).subspan(static_cast<std::size_t>(forward_start_[c]),
                                      static_cast<std::size_t>(forward_start_[c + 1] - forward_start_[c]));
+}
+
+std::span<const int> LocalColumns::around(int local) const noexcept {
+  const auto c = static_cast<std::size_t>(local);
+  return std::span(around_).subspan(static_cast<std::size_t>(around_start_[c]),
+                                    static_cast<std::size_t>(around_start_[c + 1] - around_start_[c]));
 }
 
 }  // namespace packmpi::neighbor

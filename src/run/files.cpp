@@ -24,7 +24,7 @@ double expected_particles(const scene::Scene& scene) {
 
 Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
   const std::string stem = (std::filesystem::path(options.folder) / scene.in.name).string();
-  const Files files{stem + ".hdf", stem + ".json", stem + ".log", stem + ".steps.csv"};
+  Files files{stem + ".hdf", stem + ".json", stem + ".log", stem + ".steps.csv"};
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0 || options.force) return;
     for (const std::string& path : {files.pack, files.summary, files.log, files.steps}) {
