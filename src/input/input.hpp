@@ -84,7 +84,8 @@ struct Dynamics {
   std::optional<double> time_step;  ///< [s]; none: "auto" (eq. 23)
   StopRule stop = StopRule::duration;
   Precision precision = Precision::double_;
-  int window = 0;
+  int window = 0;              ///< newest layers that move; 0: all
+  std::optional<double> thaw;  ///< [s] of the final stage; none: "auto"
 };
 
 struct Parallel {

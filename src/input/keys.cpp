@@ -227,8 +227,10 @@ std::vector<Key> dynamics_keys() {
          "What ends the dynamics of a layer: its duration.")),
     later({"mixed"}, word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
          "Arithmetic of the contact law.")),
-    only(0, whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
-         "0: all particles move.")),
+    whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
+         "So many of the newest layers move; older ones stand still, as walls to them, until the thaw. 0: all move."),
+    real("dynamics.thaw", at(dynamics, &Dynamics::thaw), time, at_least(0), "auto",
+         "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window, else none."),
   };
 }
 

@@ -54,6 +54,23 @@ Find choose(bool graded, bool periodic, bool three_d) {
 
 }  // namespace
 
+// Where the partners of cell (column c, level k) are, but those in its own column: columns ahead of it, ghosts, and
+// what stands still around.
+void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const {
+  const auto levels = static_cast<std::size_t>(cells_.levels);
+  const std::size_t low = k > 0 ? k - 1 : 0;
+  const std::size_t high = std::min(k + 2, levels);
+  runs.clear();
+  const auto add = [&](const Cells& cells, int column) {
+    const auto at = static_cast<std::size_t>(column) * levels;
+    if (cells.start[at + low] < cells.start[at + high]) runs.push_back({cells.start[at + low], cells.start[at + high]});
+  };
+  for (const int other : columns_.forward(c)) add(cells_, other);
+  if (!still_.in_use()) return;
+  add(still_cells_, c);
+  for (const int other : columns_.around(c)) add(still_cells_, other);
+}
+
 // `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
 void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const {
   const geometry::Box& box = scene_->box;
@@ -70,18 +87,16 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
 
   std::size_t size = 0;
   LocalIndex window = 1;
+  std::vector<Run> runs;
   const auto levels = static_cast<std::size_t>(cells_.levels);
   for (int c = 0; c < columns_.own(); ++c) {
     const auto column = static_cast<std::size_t>(c) * levels;
     for (std::size_t k = 0; k < levels; ++k) {
-      const std::size_t low = k > 0 ? k - 1 : 0;
-      const std::size_t high = std::min(k + 2, levels);
-      const LocalIndex own_end = cells_.start[column + high];
-      std::size_t candidates = static_cast<std::size_t>(own_end - cells_.start[column + k]);
-      for (const int other : columns_.forward(c)) {
-        const auto at = static_cast<std::size_t>(other) * levels;
-        candidates += static_cast<std::size_t>(cells_.start[at + high] - cells_.start[at + low]);
-      }
+      if (cells_.start[column + k] == cells_.start[column + k + 1]) continue;
+      const LocalIndex own_end = cells_.start[column + std::min(k + 2, levels)];
+      find_runs(c, k, runs);
+      auto candidates = static_cast<std::size_t>(own_end - cells_.start[column + k]);
+      for (const auto& [from, to] : runs) candidates += static_cast<std::size_t>(to - from);
       for (LocalIndex i = cells_.start[column + k]; i < cells_.start[column + k + 1]; ++i) {
         if (list.second.size() < size + candidates) {
           resize_tightly(list.second, size + candidates + 4096);
@@ -89,10 +104,7 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
         }
         LocalIndex* const begin = list.second.data() + size;
         LocalIndex* out = find_in(s, i, i + 1, own_end, begin);
-        for (const int other : columns_.forward(c)) {
-          const auto at = static_cast<std::size_t>(other) * levels;
-          out = find_in(s, i, cells_.start[at + low], cells_.start[at + high], out);
-        }
+        for (const auto& [from, to] : runs) out = find_in(s, i, from, to, out);
         const auto found = static_cast<std::size_t>(out - begin);
         if (list.first.size() < size + found) {
           resize_tightly(list.first, size + found + 4096);

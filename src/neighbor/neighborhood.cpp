@@ -24,9 +24,24 @@ Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, co
       scene_(&scene),
       ownership_(&ownership),
       columns_(ownership, comm.rank()),
+      still_(comm, scene.features.layout()),
       halo_(comm, scene.features.layout()) {}
 
-void Neighborhood::ownership_changed() { columns_ = LocalColumns(*ownership_, comm_->rank()); }
+void Neighborhood::ownership_changed() {
+  columns_ = LocalColumns(*ownership_, comm_->rank());
+  still_arranged_ = !still_.in_use();
+}
+
+void Neighborhood::freeze(particles::Store& store, GlobalId below) {
+  still_.take(store, below);
+  still_arranged_ = false;
+}
+
+void Neighborhood::thaw(particles::Store& store) {
+  still_.give_back(store);
+  still_cells_ = {};
+  still_arranged_ = true;
+}
 
 void Neighborhood::rebuild(particles::Store& store) {
   store.set_ghosts(0);
@@ -35,6 +50,7 @@ void Neighborhood::rebuild(particles::Store& store) {
   sort_owned(store);
   halo_.plan(store, choose_sends(store));
   sort_ghosts(store);
+  if (still_.in_use()) add_still(store);
   remember_positions(store);
   build_pairs(store, 1.0, 0.0, pairs_);
   if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
@@ -118,9 +134,14 @@ void Neighborhood::migrate(particles::Store& store) const {
 void Neighborhood::sort_owned(particles::Store& store) {
   const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
   double top = 0.0;
-  for (LocalIndex i = 0; i < store.owned(); ++i) top = std::max(top, store.position(i)[vertical]);
+  double bottom = HUGE_VAL;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    top = std::max(top, store.position(i)[vertical]);
+    bottom = std::min(bottom, store.position(i)[vertical]);
+  }
   cells_.inverse_height = 1.0 / scene_->column_width();
-  cells_.levels = static_cast<int>(comm_->max(top) * cells_.inverse_height) + 1;
+  cells_.bottom = still_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
+  cells_.levels = static_cast<int>((comm_->max(top) - cells_.bottom) * cells_.inverse_height) + 1;
   const auto levels = static_cast<std::size_t>(cells_.levels);
   cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
 
@@ -180,6 +201,36 @@ void Neighborhood::sort_ghosts(particles::Store& store) {
   halo_.order_ghosts(store, place);
 }
 
+// Frozen particles that a moving one of the same or a touching column may reach, as ghosts behind the halo's.
+void Neighborhood::add_still(particles::Store& store) {
+  const double range = scene_->column_width() * (1.0 + 1e-12);
+  if (!still_arranged_) {
+    still_.store().set_ghosts(0);
+    migrate(still_.store());
+    still_.arrange(*ownership_, columns_, range);
+    still_arranged_ = true;
+  }
+  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  std::vector<double> lowest(static_cast<std::size_t>(columns_.total()), HUGE_VAL);
+  for (int c = 0; c < columns_.own(); ++c) {
+    const auto levels = static_cast<std::size_t>(cells_.levels);
+    const auto cell = static_cast<std::size_t>(c) * levels;
+    double mine = HUGE_VAL;
+    for (LocalIndex i = cells_.start[cell]; i < cells_.start[cell + levels]; ++i) {
+      mine = std::min(mine, store.position(i)[vertical] - range);
+    }
+    const auto lower = [&](int column) {
+      lowest[static_cast<std::size_t>(column)] = std::min(lowest[static_cast<std::size_t>(column)], mine);
+    };
+    lower(c);
+    for (const int other : columns_.around(c)) lower(other);
+  }
+  still_cells_.levels = cells_.levels;
+  still_cells_.bottom = cells_.bottom;
+  still_cells_.inverse_height = cells_.inverse_height;
+  still_.append(lowest, store, still_cells_);
+}
+
 void Neighborhood::remember_positions(const particles::Store& store) {
   const auto total = static_cast<std::size_t>(store.total());
   for (int a = 0; a < scene_->box.dimension; ++a) {
@@ -225,6 +276,7 @@ std::vector<std::int64_t> Neighborhood::column_counts(const particles::Store& st
 std::size_t Neighborhood::bytes() const noexcept {
   std::size_t total =
       halo_.bytes() + cells_.start.capacity() * sizeof(LocalIndex) + radius_.capacity() * sizeof(double);
+  total += still_.store().bytes() + still_cells_.start.capacity() * sizeof(LocalIndex);
   for (const std::vector<double>& x : x_) total += x.capacity() * sizeof(double);
   for (const PairList* list : {&pairs_, &near_pairs_}) {
     total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);

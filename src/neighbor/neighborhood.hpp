@@ -7,6 +7,7 @@
 #include "neighbor/cells.hpp"
 #include "neighbor/halo.hpp"
 #include "neighbor/lists.hpp"
+#include "neighbor/still.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
 #include "scene/scene.hpp"
@@ -20,6 +21,15 @@ class Neighborhood {
 
   /// Collective. Call after the ownership table changed; then rebuild().
   void ownership_changed();
+
+  /// Every rank alike, without messages. Takes the particles with ids below `below` out of the store; they stand still
+  /// with velocity and spin zero, walls to the others, until thaw(). May be called again with a larger `below`. Then
+  /// rebuild().
+  void freeze(particles::Store& store, GlobalId below);
+  /// Every rank alike, without messages. Gives all frozen particles back to the store, at rest; then rebuild().
+  void thaw(particles::Store& store);
+  /// The frozen particles of this rank, owned; their copies from other ranks as ghosts.
+  [[nodiscard]] const particles::Store& frozen() const noexcept { return still_.store(); }
 
   /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts, makes the lists.
   /// Throws Error(numerical_failure) on all ranks if a particle is outside the container or not finite, naming it.
@@ -38,7 +48,7 @@ class Neighborhood {
   [[nodiscard]] std::int64_t rebuilds() const noexcept { return rebuilds_; }
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
 
-  /// Particles in each own column, in the order of Ownership::columns(); the weights of the balance. Local.
+  /// Moving particles in each own column, in the order of Ownership::columns(); the weights of the balance. Local.
   [[nodiscard]] std::vector<std::int64_t> column_counts(const particles::Store& store) const;
 
  private:
@@ -47,7 +57,12 @@ class Neighborhood {
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
   void sort_ghosts(particles::Store& store);
+  void add_still(particles::Store& store);
   void remember_positions(const particles::Store& store);
+  struct Run {
+    LocalIndex begin, end;  // slots
+  };
+  void find_runs(int c, std::size_t k, std::vector<Run>& runs) const;
   void build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const;
   void build_walls(const particles::Store& store);
   [[nodiscard]] double largest_displacement(const particles::Store& store) const;  // this rank's [m]
@@ -57,6 +72,9 @@ class Neighborhood {
   const scene::Ownership* ownership_;
   LocalColumns columns_;
   Cells cells_;
+  Still still_;
+  Cells still_cells_;           // slots of the frozen particles among the ghosts; empty while there are none
+  bool still_arranged_ = true;  // by the present owners
   Halo halo_;
   PairList pairs_, near_pairs_;
   WallList walls_;

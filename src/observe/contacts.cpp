@@ -12,12 +12,13 @@ namespace {
 struct PairSums {
   std::vector<double> overlaps;  // over the smaller radius, one for each pair counted here
   double largest = 0.0;
+  std::int64_t ends = 0;  // owned ends of touching pairs
 };
 
 /// Each touching pair adds one to both its ends that are owned here. A pair across a border is listed on both ranks;
-/// the owner of the smaller id counts it in the sums.
+/// the owner of the smaller id counts it in the sums. A pair with a frozen particle is listed once only.
 PairSums count_pairs(const particles::Store& store, const geometry::Box& box, const neighbor::PairList& pairs,
-                     std::vector<std::int32_t>& of_particle) {
+                     GlobalId frozen_below, std::vector<std::int32_t>& of_particle) {
   PairSums sums;
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
@@ -28,7 +29,10 @@ PairSums count_pairs(const particles::Store& store, const geometry::Box& box, co
     const bool both_owned = j < store.owned();
     if (both_owned) ++of_particle[static_cast<std::size_t>(j)];
     const auto ids = store.ids();
-    if (both_owned || ids[static_cast<std::size_t>(i)] < ids[static_cast<std::size_t>(j)]) {
+    ++sums.ends;
+    if (both_owned) ++sums.ends;
+    const GlobalId other = ids[static_cast<std::size_t>(j)];
+    if (both_owned || other < frozen_below || ids[static_cast<std::size_t>(i)] < other) {
       sums.overlaps.push_back(overlap / std::min(store.radius(i), store.radius(j)));
       sums.largest = std::max(sums.largest, sums.overlaps.back());
     }
@@ -39,10 +43,10 @@ PairSums count_pairs(const particles::Store& store, const geometry::Box& box, co
 }  // namespace
 
 Contacts contacts(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                  const neighbor::PairList& pairs, const neighbor::WallList& walls) {
+                  const neighbor::PairList& pairs, const neighbor::WallList& walls, GlobalId frozen_below) {
   Contacts result;
   result.of_particle.assign(static_cast<std::size_t>(store.owned()), 0);
-  const PairSums sums = count_pairs(store, scene.box, pairs, result.of_particle);
+  const PairSums sums = count_pairs(store, scene.box, pairs, frozen_below, result.of_particle);
 
   std::vector<std::int32_t> with_walls = result.of_particle;
   double deepest = 0.0;
@@ -56,15 +60,15 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   const int needed = scene.box.dimension + 1;  // fewer cannot hold a particle
   const auto loose = std::count_if(with_walls.begin(), with_walls.end(), [&](std::int32_t n) { return n < needed; });
 
-  std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
-                                     loose};
+  std::array<std::int64_t, 4> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
+                                     loose, sums.ends};
   comm.sum(counts);
   std::array<double, 2> maxima{sums.largest, deepest};
   comm.max(maxima);
   const double total_overlap = comm::exact_sum(comm, sums.overlaps);
   const auto particles = static_cast<double>(std::max<std::int64_t>(counts[0], 1));
   result.pairs = counts[1];
-  result.coordination = 2.0 * static_cast<double>(counts[1]) / particles;
+  result.coordination = static_cast<double>(counts[3]) / particles;
   result.rattlers = static_cast<double>(counts[2]) / particles;
   result.mean_overlap = counts[1] > 0 ? total_overlap / static_cast<double>(counts[1]) : 0.0;
   result.max_overlap = maxima[0];

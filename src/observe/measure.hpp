@@ -18,6 +18,9 @@ namespace packmpi::observe {
 /// particle top in the column (by centre; an empty column counts 0) [m]. Collective; a PETSc DMDA vector holds the
 /// columns.
 [[nodiscard]] double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
+/// The same over the owned particles of several stores together.
+[[nodiscard]] double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
+                                    const scene::Scene& scene);
 
 /// Solid fractions (CC16 eq. 22).
 struct Density {
@@ -36,18 +39,20 @@ struct Motion {
 };
 [[nodiscard]] Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
-/// Contacts at this instant, from current lists and ghosts. Collective.
+/// Contacts at this instant, from current lists and ghosts: of all particles, or of the moving ones with each other and
+/// with the frozen, whose ids are below `frozen_below`. Collective.
 struct Contacts {
   std::vector<std::int32_t> of_particle;  ///< touching particles of each owned slot (walls not counted)
   std::int64_t pairs = 0;                 ///< touching pairs, over all ranks
-  double coordination = 0.0;              ///< 2 pairs / particles
+  double coordination = 0.0;              ///< mean of of_particle over all ranks
   double rattlers = 0.0;      ///< share of particles with fewer than dimension + 1 contacts (walls counted here)
   double mean_overlap = 0.0;  ///< over touching pairs, overlap / smaller radius
   double max_overlap = 0.0;
   double max_wall_penetration = 0.0;  ///< penetration / radius
 };
 [[nodiscard]] Contacts contacts(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                                const neighbor::PairList& pairs, const neighbor::WallList& walls);
+                                const neighbor::PairList& pairs, const neighbor::WallList& walls,
+                                GlobalId frozen_below = 0);
 
 /// Radii got. Collective.
 struct SizeStatistics {

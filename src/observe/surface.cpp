@@ -128,10 +128,18 @@ class ColumnHeights {
 }  // namespace
 
 double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
+  const particles::Store* one = &store;
+  return surface_height(comm, std::span(&one, 1), scene);
+}
+
+double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
+                      const scene::Scene& scene) {
   const HeightColumns columns = make_columns(scene, comm.size());
-  Tops tops = highest_tops(store, scene, columns);
   ColumnHeights heights(comm, columns);
-  heights.raise_to(tops);
+  for (const particles::Store* store : stores) {
+    Tops tops = highest_tops(*store, scene, columns);
+    heights.raise_to(tops);
+  }
   const double sum = comm::exact_sum(comm, heights.local());
   return sum / (static_cast<double>(columns.counts[0]) * static_cast<double>(columns.counts[1]));
 }

@@ -47,6 +47,9 @@ std::vector<Field> got_fields(const RunRecord& r) {
           {"time_step", "s", r.time_step},
           {"steps", "", r.steps},
           {"particle_steps", "", r.particle_steps},
+          {"thaws", "", r.thaws},
+          {"thaw_steps", "", r.thaw_steps},
+          {"height_before_thaw", "m", r.height_before_thaw},
           {"reached", "", r.reached},
           {"stop_reason", "", r.stop_reason}};
 }

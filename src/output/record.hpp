@@ -62,7 +62,10 @@ struct RunRecord {
   double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
   std::int64_t particle_steps = 0;
-  bool reached = false;  ///< height asked reached
+  std::int64_t thaws = 0;           ///< final stages, in which all particles move; more than one if the pile sank
+  std::int64_t thaw_steps = 0;      ///< of all of them, part of steps
+  double height_before_thaw = 0.0;  ///< [m] before the last of them; 0 if there was none
+  bool reached = false;             ///< height asked reached
   std::string stop_reason;
   std::vector<LayerRow> layers;
   Audit audit;

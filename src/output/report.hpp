@@ -27,9 +27,10 @@ struct StepRow {
   double kinetic_energy = 0.0;  ///< [J]
   double max_speed = 0.0;       ///< [m/s]
   double top = 0.0;             ///< [m]
-  double mean_height = 0.0;     ///< [m] mean height of the centres
+  double mean_height = 0.0;     ///< [m] mean height of the moving particles' centres
   double max_force = 0.0;       ///< [N]
   std::int64_t rebuilds = 0;    ///< so far; depends on the ranks
+  std::int64_t moving = 0;      ///< particles that are not frozen
 };
 
 /// NAME.steps.csv, written row by row by rank 0 (a header line names columns and units); each row is on its way to the

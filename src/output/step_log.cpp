@@ -14,16 +14,16 @@ StepLog::StepLog(const comm::Comm& comm, const std::string& path) : comm_(&comm)
     file_.open(path, std::ios::trunc);
     if (!file_) fail(path, "open", errno);
     file_ << "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
-             "[N],rebuilds\n";
+             "[N],rebuilds,moving\n";
     flush();
   });
 }
 
 void StepLog::append(const StepRow& row) {
   if (comm_->rank() != 0 || failure_ != 0) return;
-  file_ << fmt::format("{},{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", row.layer, row.step, row.time,
+  file_ << fmt::format("{},{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n", row.layer, row.step, row.time,
                        row.particles, row.kinetic_energy, row.max_speed, row.top, row.mean_height, row.max_force,
-                       row.rebuilds);
+                       row.rebuilds, row.moving);
   flush();
 }
 

@@ -31,7 +31,7 @@ void Journal::layer_inserted(const output::LayerRow& row) {
 
 void Journal::moment(double share) {
   const observe::Motion motion = observe::motion(pile_.comm, pile_.store, pile_.scene);
-  const double top = observe::top(pile_.comm, pile_.store, pile_.scene);
+  const double top = pile_.top();
   const double force = pile_.comm.max(pile_.stepper.last().max_force);
   steps_.append({.layer = static_cast<std::int32_t>(pile_.first_ids.size()) - 1,
                  .step = pile_.steps,
@@ -42,25 +42,32 @@ void Journal::moment(double share) {
                  .top = top,
                  .mean_height = motion.mean_height,
                  .max_force = force,
-                 .rebuilds = pile_.neighborhood.rebuilds()});
+                 .rebuilds = pile_.neighborhood.rebuilds(),
+                 .moving = pile_.count - pile_.moving_from});
   if (pile_.comm.rank() == 0 && !quiet_) progress(share, motion.kinetic_energy, top);
 }
 
-// Particle-steps still to do, from the layers still to come, at the rate so far.
+// Particle-steps still to do over those done, both reckoned from the layers, at the rate so far.
 double Journal::seconds_left(double share) const {
   const input::Input& in = pile_.scene.in;
   const double asked = pile_.scene.box.height();
   const double per_layer = layers_done_ > 1
                                ? height_ / layers_done_
                                : in.layers.fraction * in.layers.thickness / usual_fraction(pile_.scene.box.dimension);
-  const double layers = std::max(std::ceil(asked / per_layer), layers_done_ + 1.0);
-  const double inserted = static_cast<double>(pile_.count) / (layers_done_ + 1.0);
-  const double steps = in.layers.duration / pile_.scene.time_step;
-  const double now = layers_done_ + share;  // layers settled so far
-  const double work = steps * inserted * 0.5 * (layers * (layers + 1.0) - layers_done_ * (layers_done_ + 1.0)) -
-                      steps * inserted * (layers_done_ + 1.0) * share;
-  const double finished = steps * inserted * (0.5 * layers_done_ * (layers_done_ + 1.0) + (layers_done_ + 1.0) * share);
-  return now > 0.0 ? watch_.seconds() * work / finished : -1.0;
+  const double begun = layers_done_ + (thawing_ ? 0.0 : 1.0);
+  double layers = std::max(std::ceil(asked / per_layer), begun);
+  if (in.layers.maximum > 0) layers = std::min(layers, static_cast<double>(in.layers.maximum));
+  if (thawing_) layers = begun;
+  const double window = in.dynamics.window;
+  const auto moving = [&](double n) { return window > 0.0 ? std::min(n, window) : n; };  // layers, in the n-th's time
+  const auto moved = [&](double n) {  // sum of moving(k) over k = 1 .. n
+    const double m = moving(n);
+    return 0.5 * m * (m + 1.0) + m * (n - m);
+  };
+  const double final_stage = layers * pile_.scene.thaw / in.layers.duration;
+  const double all = moved(layers) + final_stage;
+  const double done = moved(layers_done_) + share * (thawing_ ? final_stage : moving(begun));
+  return done > 0.0 ? watch_.seconds() * (all - done) / done : -1.0;
 }
 
 void Journal::progress(double share, double kinetic_energy, double top) {
@@ -70,9 +77,10 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   const double steps =
       static_cast<double>(pile_.stepper.particle_steps()) * pile_.comm.size();  // about: all ranks alike
   const std::string line = fmt::format(
-      "layer {:3d} {:3.0f} %  {} particles  top {:.4g} of {:.4g} m  KE {:.2e} J  {:.1f}e6 particle-steps/s  {} left",
-      pile_.first_ids.size(), 100.0 * share, pile_.count, top, pile_.scene.box.height(), kinetic_energy,
-      steps / now * 1e-6, text::duration(seconds_left(share)));
+      "{} {:3d} {:3.0f} %  {} particles{}  top {:.4g} of {:.4g} m  KE {:.2e} J  {:.1f}e6 particle-steps/s  {} left",
+      thawing_ ? "thaw after layer" : "layer", pile_.first_ids.size(), 100.0 * share, pile_.count,
+      pile_.moving_from > 0 ? fmt::format(" ({} moving)", pile_.count - pile_.moving_from) : "", top,
+      pile_.scene.box.height(), kinetic_energy, steps / now * 1e-6, text::duration(seconds_left(share)));
   if (terminal_) {
     fmt::print("\r{}\033[K", line);
   } else {
@@ -88,6 +96,20 @@ void Journal::layer_settled(const output::LayerRow& row) {
       "layer {:3d} settled: {} particles, height {:.4f} m, top {:.4f} m, KE/(m g d) {:.1e}, contacts {:.2f}, overlap "
       "at most {:.1e} r",
       layers_done_, row.total, row.height, row.top, row.kinetic_per_mgd, row.coordination, row.max_overlap);
+  tell(line);
+}
+
+void Journal::thaw_started() { thawing_ = true; }
+
+void Journal::thawed(double height) {
+  tell(fmt::format("thaw: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", pile_.count,
+                   pile_.scene.thaw, height_, height));
+  height_ = height;
+  thawing_ = false;
+}
+
+// On a terminal the progress line gives way.
+void Journal::tell(const std::string& line) const {
   if (pile_.comm.rank() == 0 && terminal_ && !quiet_) fmt::print("\r\033[K");
   std::fflush(stdout);
   log::info(line);

@@ -17,15 +17,19 @@ class Journal {
   Journal(const Pile& pile, const std::string& steps_path, bool quiet);
 
   void layer_inserted(const output::LayerRow& row);  ///< local
-  /// Collective. A row of the step log, and progress; `share` is the part of the layer's duration done, 0 .. 1.
+  /// Collective. A row of the step log, and progress; `share` is the part of the layer's (or the final stage's)
+  /// duration done, 0 .. 1.
   void moment(double share);
   void layer_settled(const output::LayerRow& row);  ///< local
+  void thaw_started();                              ///< local; what follows is the final stage
+  void thawed(double height);                       ///< local; height [m] after the final stage
   /// Collective. Closes the files.
   void finish();
 
  private:
   void progress(double share, double kinetic_energy, double top);
   [[nodiscard]] double seconds_left(double share) const;
+  void tell(const std::string& line) const;
 
   const Pile& pile_;
   output::StepLog steps_;
@@ -35,7 +39,7 @@ class Journal {
   double last_shown_ = 0.0;
   double height_ = 0.0;  // [m] after the last settled layer
   int layers_done_ = 0;
-  std::int64_t done_ = 0;  // particle-steps of settled layers
+  bool thawing_ = false;
 };
 
 }  // namespace packmpi::run

@@ -34,7 +34,7 @@ void insert_layer(Pile& pile, output::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
   pile.store.set_ghosts(0);
   const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
-                                .bottom = observe::top(pile.comm, pile.store, scene),
+                                .bottom = pile.top(),
                                 .thickness = scene.in.layers.thickness,
                                 .first_id = pile.count};
   const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store);
@@ -56,11 +56,17 @@ void balance(Pile& pile) {
   pile.neighborhood.rebuild(pile.store);
 }
 
-// The layer's duration in chunks of the logging interval. Returns the change of phi_bulk a second at the end [1/s].
-double settle_layer(Pile& pile, Journal& journal, output::LayerRow& row) {
+// A stretch of dynamics.
+struct Stretch {
+  std::int64_t steps = 0;
+  double creep = 0.0;  // change of phi_bulk a second at its end [1/s]
+};
+
+// `seconds` in chunks of the logging interval. What is frozen adds nothing to the creep.
+Stretch settle(Pile& pile, Journal& journal, double seconds) {
   const scene::Scene& scene = pile.scene;
-  const auto steps = static_cast<std::int64_t>(std::llround(scene.in.layers.duration / scene.time_step));
-  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.in.layers.duration;
+  const auto steps = std::max<std::int64_t>(1, std::llround(seconds / scene.time_step));
+  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : seconds;
   const auto chunk = std::max<std::int64_t>(1, std::llround(interval / scene.time_step));
   const std::int64_t creep_from =
       steps - std::max<std::int64_t>(1, std::llround(creep_share * static_cast<double>(steps)));
@@ -74,45 +80,66 @@ double settle_layer(Pile& pile, Journal& journal, output::LayerRow& row) {
     if (done == creep_from) before = observe::density(pile.comm, pile.store, scene).phi_bulk;
     if (done % chunk == 0 || done == steps) journal.moment(static_cast<double>(done) / static_cast<double>(steps));
   }
-  row.steps = steps;
-  row.duration = static_cast<double>(steps) * scene.time_step;
-  row.stop_reason = "duration";
   const double after = observe::density(pile.comm, pile.store, scene).phi_bulk;
-  return (after - before) / (static_cast<double>(steps - creep_from) * scene.time_step);
+  return {steps, (after - before) / (static_cast<double>(steps - creep_from) * scene.time_step)};
 }
 
-double height_of(const Pile& pile) {
-  return pile.scene.in.layers.height == input::HeightRule::highest
-             ? observe::top(pile.comm, pile.store, pile.scene)
-             : observe::surface_height(pile.comm, pile.store, pile.scene);
+void settle_layer(Pile& pile, Journal& journal, output::LayerRow& row, output::RunRecord& record) {
+  const Stretch stretch = settle(pile, journal, pile.scene.in.layers.duration);
+  record.creep = stretch.creep;
+  row.steps = stretch.steps;
+  row.duration = static_cast<double>(stretch.steps) * pile.scene.time_step;
+  row.stop_reason = "duration";
 }
 
 void measure_layer(const Pile& pile, output::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
-  const observe::Contacts contacts =
-      observe::contacts(pile.comm, pile.store, scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
+  const observe::Contacts contacts = observe::contacts(pile.comm, pile.store, scene, pile.neighborhood.pairs(),
+                                                       pile.neighborhood.walls(), pile.moving_from);
   const observe::Motion motion = observe::motion(pile.comm, pile.store, scene);
-  row.height = height_of(pile);
-  row.top = observe::top(pile.comm, pile.store, scene);
+  row.height = pile.height();
+  row.top = pile.top();
   row.max_overlap = contacts.max_overlap;
   row.coordination = contacts.coordination;
   const double mgd = motion.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
   row.kinetic_per_mgd = mgd > 0.0 ? motion.kinetic_energy / mgd : 0.0;
 }
 
-// The loop of Algorithm 1. Bounded.
+// The final stage: every particle moves for scene.thaw. The height is that after it.
+void thaw(Pile& pile, Journal& journal, output::RunRecord& record) {
+  if (!(pile.scene.thaw > 0.0) && pile.moving_from == 0) return;
+  pile.thaw();
+  balance(pile);
+  journal.thaw_started();
+  record.height_before_thaw = record.height;
+  if (pile.scene.thaw > 0.0) {
+    const Stretch stretch = settle(pile, journal, pile.scene.thaw);
+    record.creep = stretch.creep;
+    record.thaw_steps += stretch.steps;
+  }
+  ++record.thaws;
+  record.height = pile.height();
+  journal.thawed(record.height);
+}
+
+// The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. Bounded.
 void pile_up(Pile& pile, Journal& journal, output::RunRecord& record) {
   const std::int64_t most = most_layers(pile.scene);
-  while (record.height < record.height_asked && static_cast<std::int64_t>(record.layers.size()) < most) {
+  const auto more = [&] {
+    return record.height < record.height_asked && static_cast<std::int64_t>(record.layers.size()) < most;
+  };
+  while (more()) {
     output::LayerRow row;
     insert_layer(pile, row);
+    pile.freeze_older();
     balance(pile);
     journal.layer_inserted(row);
-    record.creep = settle_layer(pile, journal, row);
+    settle_layer(pile, journal, row, record);
     measure_layer(pile, row);
     journal.layer_settled(row);
     record.height = row.height;
     record.layers.push_back(row);
+    if (!more()) thaw(pile, journal, record);
   }
   record.reached = record.height >= record.height_asked;
   record.stop_reason = record.reached ? "height" : "layers.maximum";

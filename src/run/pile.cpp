@@ -1,6 +1,9 @@
 #include "run/pile.hpp"
 
 #include <algorithm>
+#include <array>
+
+#include "observe/measure.hpp"
 
 namespace packmpi::run {
 
@@ -11,6 +14,29 @@ Pile::Pile(const comm::Comm& world, const scene::Scene& what)
       store(what.features.layout()),
       neighborhood(world, what, ownership),
       stepper(world, what) {}
+
+void Pile::freeze_older() {
+  const auto window = static_cast<std::size_t>(scene.in.dynamics.window);
+  if (window == 0 || first_ids.size() <= window) return;
+  moving_from = first_ids[first_ids.size() - window];
+  neighborhood.freeze(store, moving_from);
+}
+
+void Pile::thaw() {
+  if (moving_from == 0) return;
+  moving_from = 0;
+  neighborhood.thaw(store);
+}
+
+double Pile::top() const {
+  return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
+}
+
+double Pile::height() const {
+  if (scene.in.layers.height == input::HeightRule::highest) return top();
+  const std::array<const particles::Store*, 2> all{&store, &neighborhood.frozen()};
+  return observe::surface_height(comm, all, scene);
+}
 
 std::vector<std::int32_t> Pile::layers() const {
   std::vector<std::int32_t> layer;
@@ -23,7 +49,7 @@ std::vector<std::int32_t> Pile::layers() const {
 
 double Pile::bytes_per_particle() const {
   const auto bytes = static_cast<double>(store.bytes() + neighborhood.bytes() + stepper.bytes());
-  return comm.max(bytes / static_cast<double>(std::max<LocalIndex>(1, store.owned())));
+  return comm.max(bytes / static_cast<double>(std::max<LocalIndex>(1, store.owned() + neighborhood.frozen().owned())));
 }
 
 }  // namespace packmpi::run

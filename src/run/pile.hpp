@@ -23,12 +23,21 @@ struct Pile {
   neighbor::Neighborhood neighborhood;
   dynamics::Stepper stepper;
   std::vector<GlobalId> first_ids;  ///< of each layer
+  GlobalId moving_from = 0;         ///< particles with smaller ids are frozen: in neighborhood.frozen(), not in store
   GlobalId count = 0;               ///< particles on all ranks
   std::int64_t steps = 0;
 
+  /// Freezes all layers but the newest dynamics.window, if there are older ones and a window. Then rebuild. Every rank
+  /// alike.
+  void freeze_older();
+  /// Brings everything frozen back into the store, at rest. Then rebuild. Every rank alike.
+  void thaw();
+  [[nodiscard]] double top() const;     ///< [m] highest top, frozen or not. Collective
+  [[nodiscard]] double height() const;  ///< [m] of the pile by the scene's rule. Collective
+
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;
-  /// Bytes a particle on the rank where they are most. Collective.
+  /// Bytes a particle, frozen or not, on the rank where they are most. Collective.
   [[nodiscard]] double bytes_per_particle() const;
 };
 

@@ -83,6 +83,12 @@ void check_periodic(const input::Input& in, const Scene& scene) {
   }
 }
 
+// What a window left frozen needs a time of its own to come to rest under what was put onto it (doc/theory.md).
+double choose_thaw(const input::Dynamics& dynamics) {
+  constexpr double usual = 0.9;  // [s]
+  return dynamics.thaw.value_or(dynamics.window > 0 ? usual : 0.0);
+}
+
 // Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
 // never above the elastic force at an overlap of a whole radius. Beyond it the run stops with a message (exit 4).
 double largest_force(const Scene& scene) {
@@ -158,6 +164,7 @@ Scene build(const input::Input& in) {
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
   scene.skin = skin_per_radius * scene.sizes.largest();
   scene.time_step = choose_time_step(in, scene.sizes);
+  scene.thaw = choose_thaw(in.dynamics);
   if (scene.features.drag) check_drag(in, scene.sizes, scene.time_step);
   check_periodic(in, scene);
   scene.force_quantum = choose_quantum(scene);

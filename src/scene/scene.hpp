@@ -32,6 +32,7 @@ struct Scene {
   double reach = 0.0;      ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
   double skin = 0.0;       ///< [m] added to reach in neighbour lists; does not change any result
   double time_step = 0.0;  ///< [s]
+  double thaw = 0.0;       ///< [s] duration of the final stage
   double force_quantum = 0.0;  ///< [N] a power of two: forces are summed as integers of this unit
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].

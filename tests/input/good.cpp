@@ -73,7 +73,8 @@ theta = 0
 time_step = "0.1 ms"
 stop = "duration"
 precision = "double"
-window = 0
+window = 3
+thaw = "0.6 s"
 [parallel]
 decomposition = "metis"
 [ensemble]
@@ -134,6 +135,8 @@ TEST(GoodInput, EveryForceAndProgramKeyArrives) {
   EXPECT_EQ(in.near_field->beta2, 4.0);
   EXPECT_EQ(in.near_field->cutoff, 0.05);
   EXPECT_EQ(in.dynamics.time_step, 1e-4);
+  EXPECT_EQ(in.dynamics.window, 3);
+  EXPECT_EQ(in.dynamics.thaw, 0.6);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);
   EXPECT_TRUE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.0);

@@ -144,6 +144,38 @@ TEST(Neighborhood, ListsEveryPairWithinTheCutOnceOnEachRankThatOwnsAnEnd) {
   }
 }
 
+// What is frozen is in pairs with the moving only, wherever it lies, and comes back at rest where it was.
+TEST(Neighborhood, FrozenParticlesAreWallsToTheMovingOnes) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const input::Input& in : scenes()) {
+    World w(comm, in, 700);
+    const double skin = w.scene.skin;
+    const auto cut = [skin](const Ball& a, const Ball& b) { return a.r + b.r + skin; };
+    for (const GlobalId below : {150, 500}) {  // the second joins the first
+      w.hood.freeze(w.store, below);
+      w.hood.rebuild(w.store);
+      EXPECT_EQ(comm.sum(std::int64_t{w.store.owned()}), 700 - below);
+      EXPECT_EQ(comm.sum(std::int64_t{w.hood.frozen().owned()}), below);
+      EXPECT_EQ(listed(w.store, w.hood.pairs()), expected(w, cut));
+      if (!in.near_field) continue;
+      const double near = in.near_field->cutoff + skin;
+      EXPECT_EQ(listed(w.store, w.hood.near_pairs()), expected(w, [near](const Ball&, const Ball&) { return near; }));
+    }
+    w.hood.thaw(w.store);
+    w.hood.rebuild(w.store);
+    EXPECT_EQ(listed(w.store, w.hood.pairs()), expected(w, cut));
+    for (LocalIndex i = 0; i < w.store.owned(); ++i) {
+      const auto id = w.store.ids()[static_cast<std::size_t>(i)];
+      const Ball& ball = w.balls[static_cast<std::size_t>(id)];
+      EXPECT_EQ(w.store.position(i), ball.x);
+      EXPECT_EQ(w.store.velocity(i), id < 500 ? Vec3{} : ball.v);
+      if (id < 500) {
+        EXPECT_EQ(w.store.spin(i), Vec3{});
+      }
+    }
+  }
+}
+
 TEST(Neighborhood, MigrationLosesNothingAndBringsEveryoneHome) {
   const comm::Comm comm(MPI_COMM_WORLD);
   for (const input::Input& in : scenes()) {

@@ -108,16 +108,17 @@ TEST_F(Report, StepLogIsATable) {
               .top = 0.5,
               .mean_height = 0.125,
               .max_force = 3.0,
-              .rebuilds = 7});
+              .rebuilds = 7,
+              .moving = 11});
   log.append({.layer = 1, .step = 200, .time = 0.02, .particles = 5});
-  EXPECT_NE(read("a.csv").find("0,100,0.01,1234567890123,1.5,0.25,0.5,0.125,3,7\n"),
+  EXPECT_NE(read("a.csv").find("0,100,0.01,1234567890123,1.5,0.25,0.5,0.125,3,7,11\n"),
             std::string::npos);  // before close()
   log.close();
   const std::string text = read("a.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
-            "[N],rebuilds");
-  EXPECT_NE(text.find("\n1,200,0.02,5,0,0,0,0,0,0\n"), std::string::npos);
+            "[N],rebuilds,moving");
+  EXPECT_NE(text.find("\n1,200,0.02,5,0,0,0,0,0,0,0\n"), std::string::npos);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

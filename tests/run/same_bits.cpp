@@ -1,6 +1,6 @@
 // The property everything parallel hangs on: one scene, one pack. The particle datasets of the pack file are identical,
 // bit for bit, at 1, 2, 3, 4, 6 and 8 ranks, in all decompositions, walls and periodic, 2D and 3D, equal and graded,
-// near field on and off. Runs on 8 ranks and makes smaller communicators of them.
+// near field on and off, with a moving window and without. Runs on 8 ranks and makes smaller communicators of them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -61,17 +61,27 @@ bool anything_touches(const output::PackRows& rows) {
   return std::ranges::any_of(rows.contacts, [](std::int32_t n) { return n > 0; });
 }
 
+// A window of `window` layers, fast layers so that several land, and a thaw; the radius of the scene above.
+input::Input window_scene(int dimension, bool graded, bool periodic, bool near_field, int window) {
+  input::Input in = scene_of(dimension, graded, periodic, near_field);
+  in.container.size.back() = 0.4;
+  in.layers.thickness = 0.08;
+  in.layers.maximum = 4;
+  in.dynamics.window = window;
+  in.dynamics.thaw = 0.01;
+  return in;
+}
+
 class SameBits : public ::testing::TestWithParam<std::tuple<int, bool, bool, bool>> {};
 
-TEST_P(SameBits, OnAnyRankCountInAnyDecomposition) {
+// Packs of the scene on `rank_counts`, in all decompositions; collective over 8 ranks.
+void expect_one_pack(input::Input in, std::initializer_list<int> rank_counts) {
   const comm::Comm world(MPI_COMM_WORLD);
   ASSERT_EQ(world.size(), 8);
-  const auto [dimension, graded, periodic, near_field] = GetParam();
   const std::string folder =
       std::filesystem::temp_directory_path() / ("packmpi_same_bits_" + std::to_string(::getppid()));
-  input::Input in = scene_of(dimension, graded, periodic, near_field);
   std::optional<output::PackRows> reference;
-  for (const int ranks : {1, 2, 3, 4, 6, 8}) {
+  for (const int ranks : rank_counts) {
     MPI_Comm part = MPI_COMM_NULL;
     MPI_Comm_split(MPI_COMM_WORLD, world.rank() < ranks ? 0 : 1, world.rank(), &part);
     if (world.rank() < ranks) {
@@ -103,6 +113,21 @@ TEST_P(SameBits, OnAnyRankCountInAnyDecomposition) {
   }
   if (world.rank() == 0) std::filesystem::remove_all(folder);
   world.barrier();
+}
+
+TEST_P(SameBits, OnAnyRankCountInAnyDecomposition) {
+  const auto [dimension, graded, periodic, near_field] = GetParam();
+  expect_one_pack(scene_of(dimension, graded, periodic, near_field), {1, 2, 3, 4, 6, 8});
+}
+
+TEST(SameBitsWithAWindow, OfOneLayer) { expect_one_pack(window_scene(3, false, false, false, 1), {1, 3, 8}); }
+
+TEST(SameBitsWithAWindow, OfTwoGradedPeriodicLayers) {
+  expect_one_pack(window_scene(3, true, true, false, 2), {1, 2, 4});
+}
+
+TEST(SameBitsWithAWindow, OfOneLayerInThePlaneWithANearField) {
+  expect_one_pack(window_scene(2, true, false, true, 1), {1, 6});
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,

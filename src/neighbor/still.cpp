@@ -1,0 +1,154 @@
+#include "neighbor/still.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+
+namespace packmpi::neighbor {
+namespace {
+
+// Where a particle belongs in the order of this room.
+struct Place {
+  int column;
+  double height;
+  LocalIndex slot;
+  friend bool operator<(const Place& a, const Place& b) {
+    return std::tie(a.column, a.height, a.slot) < std::tie(b.column, b.height, b.slot);
+  }
+};
+
+void stop(const particles::Layout& layout, double* record) {
+  std::fill_n(record + layout.velocity, layout.dimension, 0.0);
+  if (layout.rotation) std::fill_n(record + layout.spin, layout.spin_components(), 0.0);
+}
+
+}  // namespace
+
+void Still::take(particles::Store& from, GlobalId below) {
+  store_.set_ghosts(0);
+  std::vector<LocalIndex> moving;
+  for (LocalIndex i = 0; i < from.owned(); ++i) {
+    const GlobalId id = from.ids()[static_cast<std::size_t>(i)];
+    if (id >= below) {
+      moving.push_back(i);
+      continue;
+    }
+    store_.add_record(id, from.record(i));
+    stop(store_.layout(), store_.record(store_.owned() - 1));
+  }
+  from.keep(moving);
+  in_use_ = true;
+}
+
+void Still::give_back(particles::Store& to) {
+  to.set_ghosts(0);
+  for (LocalIndex i = 0; i < store_.owned(); ++i) {
+    to.add_record(store_.ids()[static_cast<std::size_t>(i)], store_.record(i));
+  }
+  store_ = particles::Store(store_.layout());
+  start_ = {};
+  in_use_ = false;
+}
+
+void Still::arrange(const scene::Ownership& ownership, const LocalColumns& columns, double range) {
+  store_.set_ghosts(0);
+  sort(ownership, columns);
+  add_copies(comm::exchange(*comm_, copies(ownership, columns, range)), ownership, columns);
+}
+
+void Still::sort(const scene::Ownership& ownership, const LocalColumns& columns) {
+  std::vector<Place> places;
+  places.reserve(static_cast<std::size_t>(store_.owned()));
+  start_.assign(static_cast<std::size_t>(columns.total()) + 1, 0);
+  for (LocalIndex i = 0; i < store_.owned(); ++i) {
+    places.push_back({columns.local(ownership.grid().column(store_.position(i))), height(i), i});
+    ++start_[static_cast<std::size_t>(places.back().column) + 1];
+  }
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  std::ranges::sort(places, std::less<>{});
+  std::vector<LocalIndex> order(places.size());
+  std::ranges::transform(places, order.begin(), &Place::slot);
+  store_.permute(order);
+}
+
+std::vector<comm::Parcel> Still::copies(const scene::Ownership& ownership, const LocalColumns& columns,
+                                        double range) const {
+  std::vector<comm::Parcel> parcels;
+  const std::size_t record = store_.layout().record_bytes();
+  for (const LocalColumns::Border& border : columns.borders()) {  // ascending in rank
+    if (parcels.empty() || parcels.back().rank != border.rank) parcels.push_back({border.rank, {}});
+    std::vector<std::byte>& bytes = parcels.back().bytes;
+    const auto c = static_cast<std::size_t>(border.local);
+    for (LocalIndex i = start_[c]; i < start_[c + 1]; ++i) {
+      const Vec3 x = store_.position(i);
+      const bool wanted = std::ranges::any_of(
+          border.columns, [&](geometry::ColumnIndex column) { return ownership.grid().distance(x, column) < range; });
+      if (!wanted) continue;
+      const auto* id = reinterpret_cast<const std::byte*>(&store_.ids()[static_cast<std::size_t>(i)]);
+      const auto* body = reinterpret_cast<const std::byte*>(store_.record(i));
+      bytes.insert(bytes.end(), id, id + sizeof(GlobalId));
+      bytes.insert(bytes.end(), body, body + record);
+    }
+  }
+  return parcels;
+}
+
+void Still::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ownership& ownership,
+                       const LocalColumns& columns) {
+  particles::Store arrived(store_.layout());
+  std::vector<double> body(static_cast<std::size_t>(store_.layout().stride));
+  for (const comm::Parcel& parcel : parcels) {
+    for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(GlobalId) + store_.layout().record_bytes()) {
+      GlobalId id = 0;
+      std::memcpy(&id, parcel.bytes.data() + at, sizeof id);
+      std::memcpy(body.data(), parcel.bytes.data() + at + sizeof id, store_.layout().record_bytes());
+      arrived.add_record(id, body.data());
+    }
+  }
+  std::vector<Place> places;
+  for (LocalIndex i = 0; i < arrived.owned(); ++i) {
+    const Vec3 x = arrived.position(i);
+    places.push_back(
+        {columns.local(ownership.grid().column(x)), x[static_cast<std::size_t>(store_.layout().dimension - 1)], i});
+  }
+  std::ranges::sort(places, std::less<>{});
+  store_.set_ghosts(arrived.owned());
+  LocalIndex slot = store_.owned();
+  auto column = static_cast<std::size_t>(columns.own());
+  for (const Place& place : places) {
+    while (column < static_cast<std::size_t>(place.column)) start_[++column] = slot;
+    std::memcpy(store_.record(slot), arrived.record(place.slot), store_.layout().record_bytes());
+    store_.ids()[static_cast<std::size_t>(slot)] = arrived.ids()[static_cast<std::size_t>(place.slot)];
+    ++slot;
+  }
+  while (column < static_cast<std::size_t>(columns.total())) start_[++column] = slot;
+}
+
+void Still::append(const std::vector<double>& lowest, particles::Store& moving, Cells& cells) const {
+  const auto levels = static_cast<std::size_t>(cells.levels);
+  cells.start.assign(lowest.size() * levels + 1, moving.total());
+  std::vector<LocalIndex> from(lowest.size());
+  const LocalIndex before = moving.total();
+  LocalIndex count = 0;
+  for (std::size_t c = 0; c < lowest.size(); ++c) {
+    LocalIndex i = start_[c + 1];
+    while (i > start_[c] && height(i - 1) >= lowest[c]) --i;
+    from[c] = i;
+    count += start_[c + 1] - i;
+  }
+  moving.set_ghosts(moving.ghosts() + count);
+  LocalIndex slot = before;
+  for (std::size_t c = 0; c < lowest.size(); ++c) {
+    std::size_t cell = c * levels;
+    for (LocalIndex i = from[c]; i < start_[c + 1]; ++i, ++slot) {
+      const std::size_t home = c * levels + static_cast<std::size_t>(cells.level(height(i)));
+      while (cell < home) cells.start[++cell] = slot;
+      std::memcpy(moving.record(slot), store_.record(i), store_.layout().record_bytes());
+      moving.ids()[static_cast<std::size_t>(slot)] = store_.ids()[static_cast<std::size_t>(i)];
+    }
+    while (cell < (c + 1) * levels) cells.start[++cell] = slot;
+  }
+}
+
+}  // namespace packmpi::neighbor
