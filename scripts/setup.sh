@@ -15,7 +15,7 @@ for option in "$@"; do
     --plots) packages+=(python3 python3-h5py python3-matplotlib) ;;
     --peers) packages+=(python3 lammps) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
-    --checks) packages+=(clang clang-tidy clang-format) ;;
+    --checks) packages+=(clang clang-tidy clang-format python3) ;;
     *) sed -n '2,7s/^# //p' "$0" >&2; exit 2 ;;
   esac
 done
