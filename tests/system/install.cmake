@@ -24,8 +24,8 @@ endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B consumer -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${FOLDER}/moved
   -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${hidden})
 run(${CMAKE_COMMAND} --build consumer)
-run(consumer/consumer)
-if(NOT text MATCHES "packmpi ${VERSION} \\(.+, .+\\)")
+run(consumer/consumer ${SCENE})
+if(NOT text MATCHES "packmpi ${VERSION} \\(.+, .+\\)\npack/quickstart.hdf: [1-9][0-9]* particles, code 3\nwithout a scene: code 2, .*no-such-scene")
   message(FATAL_ERROR "the consumer said: ${text}")
 endif()
 

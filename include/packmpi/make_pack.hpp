@@ -1,0 +1,36 @@
+/// Making a pack from another program.
+#pragma once
+#include <mpi.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace packmpi {
+
+/// What the command line's options are to the program.
+struct PackOptions {
+  std::string folder = ".";      ///< where NAME.hdf, NAME.json, NAME.log and NAME.steps.csv go; made if missing
+  std::vector<std::string> set;  ///< changes of the scene, "key.path=value" (doc/input.md)
+  bool force = false;            ///< existing outputs may be replaced
+  bool quiet = true;             ///< only warnings and errors are printed
+};
+
+/// What came of it; the same on every rank.
+struct PackResult {
+  int code = 0;       ///< exit code of the program: 0 done, 3 a target was missed, others: no pack
+  std::string error;  ///< one line, if there is no pack
+  std::string file;   ///< path of the pack file (doc/file_format.md)
+  std::int64_t particles = 0;
+  double height = 0.0;        ///< [m]
+  double phi = 0.0;           ///< solid fraction below the height asked for (CC16 eq. 22)
+  double phi_bulk = 0.0;      ///< solid fraction between 0.2 and 0.8 of that height
+  double coordination = 0.0;  ///< mean touching particles
+};
+
+/// Makes the pack of a scene file on the ranks of `comm` and writes it. Collective over `comm`; throws nothing. Needs
+/// MPI to be initialised; starts PETSc on MPI_COMM_WORLD for the time of the call if nobody has, so all ranks of
+/// MPI_COMM_WORLD must call it then (each with its own communicator, if they like). Cost: the whole run.
+[[nodiscard]] PackResult make_pack(MPI_Comm comm, const std::string& scene_file, const PackOptions& options = {});
+
+}  // namespace packmpi
