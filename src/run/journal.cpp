@@ -76,11 +76,11 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   last_shown_ = now;
   const double steps =
       static_cast<double>(pile_.stepper.particle_steps()) * pile_.comm.size();  // about: all ranks alike
-  const std::string line = fmt::format(
-      "{} {:3d} {:3.0f} %  {} particles{}  top {:.4g} of {:.4g} m  KE {:.2e} J  {:.1f}e6 particle-steps/s  {} left",
-      thawing_ ? "thaw after layer" : "layer", pile_.first_ids.size(), 100.0 * share, pile_.count,
-      pile_.moving_from > 0 ? fmt::format(" ({} moving)", pile_.count - pile_.moving_from) : "", top,
-      pile_.scene.box.height(), kinetic_energy, steps / now * 1e-6, text::duration(seconds_left(share)));
+  // Under 80 columns: a longer line would wrap, and a wrapped line cannot be rewritten.
+  const std::string line =
+      fmt::format("{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {} left",
+                  thawing_ ? "thaw" : "layer", pile_.first_ids.size(), 100.0 * share, pile_.count - pile_.moving_from,
+                  top, kinetic_energy, steps / now * 1e-6, text::duration(seconds_left(share)));
   if (terminal_) {
     fmt::print("\r{}\033[K", line);
   } else {
