@@ -47,14 +47,16 @@ def lammps_rates(text, atoms):
 def bed(program, particles, runs, folder):
     """One row: particles, our rates, LAMMPS' rates (three of each a run), and the ratios run by run."""
     ours, theirs, ratios, bytes_each = [], [], [], 0
+    steps = 300 if particles < 500000 else 100
     for _ in range(runs):
         data = Path(folder) / "bed.data"
-        text, _ = run([program, particles, 300, 3, 1, 0, data], folder)
+        text, _ = run([program, particles, steps, 3, 1, 0, data], folder)
         mine = float(re.search(r"median (\S+)e6", text)[1]) * 1e6
         atoms = int(re.search(r"(\d+) particles on", text)[1])
         bytes_each = int(re.search(r"(\d+) bytes a particle", text)[1])
         side = float(re.search(r"-0.005 (\S+) xlo xhi", data.read_text()[:400])[1]) - 0.005
-        text, _ = run(["lmp", "-in", LAMMPS / "bed.in", "-var", "data", data, "-var", "S", side, "-log", "none"], folder)
+        text, _ = run(["lmp", "-in", LAMMPS / "bed.in", "-var", "data", data, "-var", "S", side, "-var", "n", steps,
+                       "-var", "warm", steps, "-log", "none"], folder)
         rates = lammps_rates(text, atoms)
         ours.append(mine)
         theirs.append(statistics.median(rates))
