@@ -10,9 +10,9 @@ namespace {
 constexpr double unbounded_slip_rate = 1e150;  // [1/s]; its products with any mass and slip stay finite
 
 /// Contact of two bodies of which `sharing` deform: 2 for a pair of particles, 1 at a rigid wall.
-LawConstants constants(const input::Input& in, double sharing, double friction) {
+LawConstants constants(const input::Input& in, double youngs_modulus, double sharing, double friction) {
   const double nu = in.particles.poisson_ratio;
-  const double modulus = in.particles.youngs_modulus / (sharing * (1.0 - nu * nu));  // E*
+  const double modulus = youngs_modulus / (sharing * (1.0 - nu * nu));  // E*
   return {.stiffness = 4.0 / 3.0 * modulus,
           .damping = 2.0 * in.contact.damping_ratio * std::sqrt(2.0 * modulus),
           .friction = friction,
@@ -34,16 +34,16 @@ double slip_rate(const input::Contact& contact, double time_step) {
 
 }  // namespace
 
-Law make_law(const scene::Scene& scene) {
+Law make_law(const scene::Scene& scene, const scene::Stage& stage) {
   const input::Input& in = scene.in;
   const bool rigid = in.contact.wall == input::WallStiffness::rigid;
   const bool rolls = scene.features.rotation &&
                      in.contact.friction_velocity == input::FrictionVelocity::contact;  // spin takes up slip
-  Law law{.pair = constants(in, 2.0, in.contact.friction),
-          .wall = constants(in, rigid ? 1.0 : 2.0, in.contact.wall_friction),
+  Law law{.pair = constants(in, stage.youngs_modulus, 2.0, in.contact.friction),
+          .wall = constants(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, in.contact.wall_friction),
           .mass_factor = 3.0 / (4.0 * std::numbers::pi * in.particles.density),
           .spin_slip = in.contact.friction_velocity == input::FrictionVelocity::contact ? 1.0 : 0.0,
-          .slip_rate = slip_rate(in.contact, scene.time_step),
+          .slip_rate = slip_rate(in.contact, stage.time_step),
           .slip_mass = rolls ? 2.0 / 7.0 : 1.0,
           .lowest_force = in.contact.tension_cutoff ? 0.0 : -std::numeric_limits<double>::infinity()};
   if (scene.sizes.equal()) {

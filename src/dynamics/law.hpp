@@ -24,7 +24,9 @@ struct Law {
   double lowest_force;  ///< 0 with the tension cut-off, else -infinity [N]
 };
 
-/// The law of a scene, for its time step.
-[[nodiscard]] Law make_law(const scene::Scene& scene);
+/// The law of a scene, for the time step and modulus of a stage.
+[[nodiscard]] Law make_law(const scene::Scene& scene, const scene::Stage& stage);
+/// The same for the scene's last stage.
+[[nodiscard]] inline Law make_law(const scene::Scene& scene) { return make_law(scene, scene.last()); }
 
 }  // namespace packmpi::dynamics

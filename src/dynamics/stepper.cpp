@@ -22,7 +22,16 @@ Vec3 gravity_of(const scene::Scene& scene) {
 }  // namespace
 
 Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene)
-    : comm_(&comm), scene_(&scene), kernel_(select_kernel(scene.features)), law_(make_law(scene)) {}
+    : comm_(&comm),
+      scene_(&scene),
+      kernel_(select_kernel(scene.features)),
+      time_step_(scene.time_step),
+      law_(make_law(scene)) {}
+
+void Stepper::use(const scene::Stage& stage) {
+  time_step_ = stage.time_step;
+  law_ = make_law(*scene_, stage);
+}
 
 void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps) {
   for (std::int64_t step = 0; step < steps; ++step) {
@@ -31,7 +40,7 @@ void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborh
     last_ = kernel_(data(store, neighborhood));
     particle_steps_ += store.owned();
     const bool failed = !last_.in_range || !near_in_range_;
-    if (neighborhood.follow(store, last_.max_speed, scene_->time_step, failed)) fail(store, step);
+    if (neighborhood.follow(store, last_.max_speed, time_step_, failed)) fail(store, step);
   }
 }
 
@@ -63,7 +72,7 @@ StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& ne
       .ring_mask = ring_mask_,
       .law = law_,
       .force_quantum = scene_->force_quantum,
-      .time_step = scene_->time_step,
+      .time_step = time_step_,
       .gravity = gravity_of(*scene_),
       .drag = scene_->in.drag.coefficient,
       .fluid_velocity = scene_->in.drag.fluid_velocity,

@@ -15,7 +15,11 @@ class Stepper {
  public:
   Stepper(const comm::Comm& comm, const scene::Scene& scene);
 
-  /// Collective. `steps` steps of scene.time_step. On entry and on return lists and ghosts belong to the positions.
+  /// From now on this time step and modulus; at first those of scene.last(). The forces of a modulus beyond the
+  /// particles' are out of range. Local, but on every rank alike.
+  void use(const scene::Stage& stage);
+
+  /// Collective. `steps` steps. On entry and on return lists and ghosts belong to the positions.
   /// Throws Error(numerical_failure) on all ranks, within a step of the first force out of range or non-finite speed,
   /// with the particle and what to change.
   void advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps);
@@ -34,6 +38,7 @@ class Stepper {
   const comm::Comm* comm_;
   const scene::Scene* scene_;
   Kernel kernel_;
+  double time_step_;  // [s]
   Law law_;
   std::vector<std::int64_t> ring_;  // accumulators, with room to align
   std::int64_t* ring_begin_ = nullptr;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "input/words.hpp"
@@ -129,23 +130,42 @@ void check_counts(const Case& scene) {
   }
 }
 
-void check_time(const Case& scene) {
-  const Input& in = scene.in;
-  const auto step = in.dynamics.time_step;
+/// One of the two time steps against what it must fit into.
+void check_step(const Case& scene, const char* key, std::optional<double> step, const char* whole_key, double whole) {
   if (!step) return;
-  if (*step > in.layers.duration) {
-    scene.refuse("dynamics.time_step",
-                 fmt::format("{:g} s is longer than layers.duration = {:g} s; shorten it", *step, in.layers.duration));
+  if (*step > whole) {
+    scene.refuse(key, fmt::format("{:g} s is longer than {} = {:g} s; shorten it", *step, whole_key, whole));
   }
-  if (!(in.layers.duration / *step <= 0x1p40)) {
-    scene.refuse("dynamics.time_step",
-                 fmt::format("{:.2g} steps a layer, more than 2^40; lengthen it", in.layers.duration / *step));
+  if (!(whole / *step <= 0x1p40)) {
+    scene.refuse(key, fmt::format("{:.2g} steps a layer, more than 2^40; lengthen it", whole / *step));
   }
-  if (in.contact.regularisation == Regularisation::viscous && *step > 0.5 * in.contact.slip_time) {
+  if (scene.in.contact.regularisation == Regularisation::viscous && *step > 0.5 * scene.in.contact.slip_time) {
     scene.refuse("contact.slip_time",
                  fmt::format("{:g} s is shorter than two time steps of {:g} s; lengthen it, or shorten the step",
-                             in.contact.slip_time, *step));
+                             scene.in.contact.slip_time, *step));
   }
+}
+
+void check_time(const Case& scene) {
+  const Input& in = scene.in;
+  check_step(scene, "dynamics.time_step", in.dynamics.time_step, "layers.duration", in.layers.duration);
+  check_step(scene, "layers.time_step", in.layers.time_step, "layers.duration", in.layers.duration);
+}
+
+void check_stages(const Case& scene) {
+  const Layers& layers = scene.in.layers;
+  const double modulus = layers.youngs_modulus.value_or(scene.in.particles.youngs_modulus);
+  if (modulus > scene.in.particles.youngs_modulus) {
+    scene.refuse("layers.youngs_modulus",
+                 fmt::format("{:g} Pa is above particles.youngs_modulus = {:g} Pa; layers settle softer or alike",
+                             modulus, scene.in.particles.youngs_modulus));
+  }
+  const auto thaw = scene.in.dynamics.thaw;
+  if (!thaw) return;
+  if (*thaw == 0.0 && modulus < scene.in.particles.youngs_modulus) {
+    scene.refuse("dynamics.thaw", "softer layers harden in it; give a time, or remove layers.youngs_modulus");
+  }
+  if (*thaw > 0.0) check_step(scene, "dynamics.time_step", scene.in.dynamics.time_step, "dynamics.thaw", *thaw);
 }
 
 void check_features(const Case& scene) {
@@ -169,6 +189,7 @@ void check(const Input& in, const Document& document) {
   check_fraction(scene);
   check_counts(scene);
   check_time(scene);
+  check_stages(scene);
   check_features(scene);
 }
 

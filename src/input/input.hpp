@@ -43,9 +43,11 @@ struct Particles {
 };
 
 struct Layers {
-  double thickness = 0.0;  ///< [m] h_0
-  double fraction = 0.0;   ///< [-] phi_0
-  double duration = 0.0;   ///< [s] of dynamics a layer
+  double thickness = 0.0;                ///< [m] h_0
+  double fraction = 0.0;                 ///< [-] phi_0
+  double duration = 0.0;                 ///< [s] of dynamics a layer, at most
+  std::optional<double> youngs_modulus;  ///< [Pa] while layers settle; none: "auto"
+  std::optional<double> time_step;       ///< [s] while layers settle; none: "auto"
   HeightRule height = HeightRule::surface;
   Vec3 velocity{};            ///< [m/s] at insertion
   Vec3 spin{};                ///< [rad/s] at insertion; 2D: only z
@@ -83,6 +85,8 @@ struct Dynamics {
   double theta = 0.0;               ///< only 0 (explicit) in this version
   std::optional<double> time_step;  ///< [s]; none: "auto" (eq. 23)
   StopRule stop = StopRule::duration;
+  double settled_energy = 0.0, settled_drift = 0.0;  ///< [-] limits of "settled"
+  double settled_hold = 0.0;                         ///< [s] for which both must hold
   Precision precision = Precision::double_;
   int window = 0;              ///< newest layers that move; 0: all
   std::optional<double> thaw;  ///< [s] of the final stage; none: "auto"

@@ -96,6 +96,8 @@ constexpr Condition graded{"distribution = \"gaussian\" or \"uniform\"",
                            [](const Input& in) { return !equal.holds(in); }};
 constexpr Condition viscous{"regularisation = \"viscous\"",
                             [](const Input& in) { return in.contact.regularisation == Regularisation::viscous; }};
+constexpr Condition settled{"stop = \"settled\"",
+                            [](const Input& in) { return in.dynamics.stop == StopRule::settled; }};
 constexpr Condition near_field{"[near_field] is present", [](const Input& in) { return in.near_field.has_value(); }};
 
 // clang-format off
@@ -159,7 +161,11 @@ std::vector<Key> layer_keys() {
     real("layers.fraction", at(layers, &Layers::fraction), ratio, inside(0, 1), mandatory,
          "Solid fraction phi_0 of that region after insertion. Random insertion ends at 0.547 in 2D, 0.384 in 3D."),
     real("layers.duration", at(layers, &Layers::duration), time, above(0), "1.0",
-         "Simulated time of dynamics after each layer."),
+         "Simulated time of dynamics after each layer, at most."),
+    real("layers.youngs_modulus", at(layers, &Layers::youngs_modulus), pressure, above(0), "auto",
+         "Modulus while layers settle; softer takes larger steps, and hardens in the thaw. \"auto\": that of the particles."),
+    real("layers.time_step", at(layers, &Layers::time_step), time, above(0), "auto",
+         "Time step while layers settle; \"auto\": dynamics.time_step, or for softer particles the limit of eq. (23)."),
     word("layers.height", at(layers, &Layers::height), "surface",
          "What must reach H_d: \"surface\", the mean over lateral columns of the highest top; \"highest\", the one highest top."),
     reals("layers.velocity", at(layers, &Layers::velocity), Count::axes, velocity, any, "0.0",
@@ -223,14 +229,20 @@ std::vector<Key> dynamics_keys() {
          "Time integration: 0 is the explicit Algorithm 2 of the paper.")),
     real("dynamics.time_step", at(dynamics, &Dynamics::time_step), time, above(0), "auto",
          "Time step, or \"auto\": from the contact duration, eq. (23)."),
-    later({"settled"}, word("dynamics.stop", at(dynamics, &Dynamics::stop), "duration",
-         "What ends the dynamics of a layer: its duration.")),
+    word("dynamics.stop", at(dynamics, &Dynamics::stop), "duration",
+         "What ends the dynamics of a layer: its duration, or that it has settled, and its duration at the latest."),
+    when(settled, real("dynamics.settled_energy", at(dynamics, &Dynamics::settled_energy), plain, above(0), "1e-3",
+         "A layer has settled when the mean kinetic energy of moving particles is below this times m g d ...")),
+    when(settled, real("dynamics.settled_drift", at(dynamics, &Dynamics::settled_drift), plain, above(0), "5e-3",
+         "... and the speed of their mean height below this times sqrt(g d), d being the mean diameter ...")),
+    when(settled, real("dynamics.settled_hold", at(dynamics, &Dynamics::settled_hold), time, above(0), "0.05",
+         "... for so long. Both are looked at ten times in this time.")),
     later({"mixed"}, word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
          "Arithmetic of the contact law.")),
     whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
          "So many of the newest layers move; older ones stand still, as walls to them, until the thaw. 0: all move."),
     real("dynamics.thaw", at(dynamics, &Dynamics::thaw), time, at_least(0), "auto",
-         "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window, else none."),
+         "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window or softer layers, else none."),
   };
 }
 

@@ -46,6 +46,7 @@ std::vector<Field> got_fields(const RunRecord& r) {
           {"max_radius", "m", r.max_radius},
           {"time_step", "s", r.time_step},
           {"steps", "", r.steps},
+          {"duration", "s", r.duration},
           {"particle_steps", "", r.particle_steps},
           {"thaws", "", r.thaws},
           {"thaw_steps", "", r.thaw_steps},

@@ -61,6 +61,7 @@ struct RunRecord {
   double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
   double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
+  double duration = 0.0;  ///< [s] simulated
   std::int64_t particle_steps = 0;
   std::int64_t thaws = 0;           ///< final stages, in which all particles move; more than one if the pile sank
   std::int64_t thaw_steps = 0;      ///< of all of them, part of steps

@@ -35,7 +35,7 @@ void Journal::moment(double share) {
   const double force = pile_.comm.max(pile_.stepper.last().max_force);
   steps_.append({.layer = static_cast<std::int32_t>(pile_.first_ids.size()) - 1,
                  .step = pile_.steps,
-                 .time = static_cast<double>(pile_.steps) * pile_.scene.time_step,
+                 .time = pile_.time(),
                  .particles = pile_.count,
                  .kinetic_energy = motion.kinetic_energy,
                  .max_speed = motion.max_speed,
@@ -64,7 +64,8 @@ double Journal::seconds_left(double share) const {
     const double m = moving(n);
     return 0.5 * m * (m + 1.0) + m * (n - m);
   };
-  const double final_stage = layers * pile_.scene.thaw / in.layers.duration;
+  const double final_stage =  // in units of a layer's steps
+      layers * (pile_.scene.thaw / pile_.scene.time_step) / (in.layers.duration / pile_.scene.settling.time_step);
   const double all = moved(layers) + final_stage;
   const double done = moved(layers_done_) + share * (thawing_ ? final_stage : moving(begun));
   return done > 0.0 ? watch_.seconds() * (all - done) / done : -1.0;
@@ -93,9 +94,11 @@ void Journal::layer_settled(const output::LayerRow& row) {
   ++layers_done_;
   height_ = row.height;
   const std::string line = fmt::format(
-      "layer {:3d} settled: {} particles, height {:.4f} m, top {:.4f} m, KE/(m g d) {:.1e}, contacts {:.2f}, overlap "
+      "layer {:3d} after {:.3g} s ({}): {} particles, height {:.4f} m, top {:.4f} m, KE/(m g d) {:.1e}, contacts "
+      "{:.2f}, overlap "
       "at most {:.1e} r",
-      layers_done_, row.total, row.height, row.top, row.kinetic_per_mgd, row.coordination, row.max_overlap);
+      layers_done_, row.duration, row.stop_reason, row.total, row.height, row.top, row.kinetic_per_mgd,
+      row.coordination, row.max_overlap);
   tell(line);
 }
 

@@ -16,12 +16,10 @@
 #include "run/journal.hpp"
 #include "run/pile.hpp"
 #include "run/record.hpp"
+#include "run/settle.hpp"
 
 namespace packmpi::run {
 namespace {
-
-// Share of a layer's duration over which its creep is measured.
-constexpr double creep_share = 0.1;
 
 // Every layer adds phi_0 h_0 of solid and no pile is denser than solid: more layers than this never come to H_d.
 std::int64_t most_layers(const scene::Scene& scene) {
@@ -56,40 +54,13 @@ void balance(Pile& pile) {
   pile.neighborhood.rebuild(pile.store);
 }
 
-// A stretch of dynamics.
-struct Stretch {
-  std::int64_t steps = 0;
-  double creep = 0.0;  // change of phi_bulk a second at its end [1/s]
-};
-
-// `seconds` in chunks of the logging interval. What is frozen adds nothing to the creep.
-Stretch settle(Pile& pile, Journal& journal, double seconds) {
-  const scene::Scene& scene = pile.scene;
-  const auto steps = std::max<std::int64_t>(1, std::llround(seconds / scene.time_step));
-  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : seconds;
-  const auto chunk = std::max<std::int64_t>(1, std::llround(interval / scene.time_step));
-  const std::int64_t creep_from =
-      steps - std::max<std::int64_t>(1, std::llround(creep_share * static_cast<double>(steps)));
-  double before = 0.0;
-  for (std::int64_t done = 0; done < steps;) {
-    std::int64_t next = std::min(steps, (done / chunk + 1) * chunk);
-    if (done < creep_from) next = std::min(next, creep_from);
-    pile.stepper.advance(pile.store, pile.neighborhood, next - done);
-    pile.steps += next - done;
-    done = next;
-    if (done == creep_from) before = observe::density(pile.comm, pile.store, scene).phi_bulk;
-    if (done % chunk == 0 || done == steps) journal.moment(static_cast<double>(done) / static_cast<double>(steps));
-  }
-  const double after = observe::density(pile.comm, pile.store, scene).phi_bulk;
-  return {steps, (after - before) / (static_cast<double>(steps - creep_from) * scene.time_step)};
-}
-
 void settle_layer(Pile& pile, Journal& journal, output::LayerRow& row, output::RunRecord& record) {
-  const Stretch stretch = settle(pile, journal, pile.scene.in.layers.duration);
-  record.creep = stretch.creep;
-  row.steps = stretch.steps;
-  row.duration = static_cast<double>(stretch.steps) * pile.scene.time_step;
-  row.stop_reason = "duration";
+  Course course;
+  const Settled settled = settle(pile, journal, Part::layer, course);
+  record.creep = settled.creep;
+  row.steps = settled.steps;
+  row.duration = settled.seconds;
+  row.stop_reason = settled.early ? "settled" : "duration";
 }
 
 void measure_layer(const Pile& pile, output::LayerRow& row) {
@@ -113,9 +84,8 @@ void thaw(Pile& pile, Journal& journal, output::RunRecord& record) {
   journal.thaw_started();
   record.height_before_thaw = record.height;
   if (pile.scene.thaw > 0.0) {
-    const Stretch stretch = settle(pile, journal, pile.scene.thaw);
-    record.creep = stretch.creep;
-    record.thaw_steps += stretch.steps;
+    Course course;
+    record.creep = settle(pile, journal, Part::thaw, course).creep;
   }
   ++record.thaws;
   record.height = pile.height();

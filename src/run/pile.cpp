@@ -28,6 +28,11 @@ void Pile::thaw() {
   neighborhood.thaw(store);
 }
 
+double Pile::time() const {
+  return static_cast<double>(steps - thaw_steps) * scene.settling.time_step +
+         static_cast<double>(thaw_steps) * scene.time_step;
+}
+
 double Pile::top() const {
   return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
 }

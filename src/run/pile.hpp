@@ -26,6 +26,9 @@ struct Pile {
   GlobalId moving_from = 0;         ///< particles with smaller ids are frozen: in neighborhood.frozen(), not in store
   GlobalId count = 0;               ///< particles on all ranks
   std::int64_t steps = 0;
+  std::int64_t thaw_steps = 0;  ///< of them, in final stages
+
+  [[nodiscard]] double time() const;  ///< [s] simulated
 
   /// Freezes all layers but the newest dynamics.window, if there are older ones and a window. Then rebuild. Every rank
   /// alike.

@@ -21,8 +21,8 @@ double mass(const input::Particles& particles, double radius) {
   return particles.density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 }
 
-double pair_modulus(const input::Particles& particles) {
-  return particles.youngs_modulus / (2.0 * (1.0 - particles.poisson_ratio * particles.poisson_ratio));
+double pair_modulus(const input::Particles& particles, double youngs_modulus) {
+  return youngs_modulus / (2.0 * (1.0 - particles.poisson_ratio * particles.poisson_ratio));
 }
 
 // Speed at which a particle inserted at the top of a layer's region reaches its bottom; eq. (23) wants one.
@@ -31,33 +31,50 @@ double impact_speed(const input::Input& in, double drop) {
   return std::sqrt(2.0 * in.jamming.gravity * drop + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-double step_limit(const input::Input& in, double radius) {
+double step_limit(const input::Input& in, double radius, double youngs_modulus) {
   const double speed = impact_speed(in, in.layers.thickness);
-  return contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, pair_modulus(in.particles), speed) / 5.0;
+  const double modulus = pair_modulus(in.particles, youngs_modulus);
+  return contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, modulus, speed) / 5.0;
 }
 
 [[noreturn]] void refuse(const input::Input& in, const std::string& words) {
   throw Error(ExitCode::bad_input, in.file + ": " + words);
 }
 
-double choose_time_step(const input::Input& in, const Sizes& sizes) {
-  if (!in.dynamics.time_step) {
-    const double limit = step_limit(in, sizes.smallest());
+// The step `asked` under `key` for particles of this modulus; none: the limit of eq. (23).
+double choose_time_step(const input::Input& in, const Sizes& sizes, const char* key, std::optional<double> asked,
+                        double youngs_modulus) {
+  if (!asked) {
+    const double limit = step_limit(in, sizes.smallest(), youngs_modulus);
     if (!std::isfinite(limit)) {
-      refuse(in,
-             "dynamics.time_step: \"auto\" needs gravity or a speed at insertion to find the impact speed of eq. (23); "
-             "give a number in seconds");
+      refuse(in, fmt::format("{}: \"auto\" needs gravity or a speed at insertion to find the impact speed of eq. (23); "
+                             "give a number in seconds",
+                             key));
     }
     return limit;
   }
-  const double limit = step_limit(in, sizes.mean());
-  if (*in.dynamics.time_step > limit) {
-    refuse(in,
-           fmt::format("dynamics.time_step: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m and "
-                       "impact speed {:.3g} m/s; use a smaller step, \"auto\", or softer particles",
-                       *in.dynamics.time_step, limit, sizes.mean(), impact_speed(in, in.layers.thickness)));
+  const double limit = step_limit(in, sizes.mean(), youngs_modulus);
+  if (*asked > limit) {
+    refuse(in, fmt::format("{}: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m and impact speed "
+                           "{:.3g} m/s; use a smaller step, \"auto\", or softer particles",
+                           key, *asked, limit, sizes.mean(), impact_speed(in, in.layers.thickness)));
   }
-  return *in.dynamics.time_step;
+  return *asked;
+}
+
+double settling_modulus(const input::Input& in) {
+  return in.layers.youngs_modulus.value_or(in.particles.youngs_modulus);
+}
+
+bool softer(const input::Input& in) { return settling_modulus(in) < in.particles.youngs_modulus; }
+
+// How layers settle: as the final stage, or softer, or in larger steps.
+Stage choose_settling(const input::Input& in, const Sizes& sizes, double time_step) {
+  Stage stage{time_step, settling_modulus(in)};
+  if (in.layers.time_step || softer(in)) {
+    stage.time_step = choose_time_step(in, sizes, "layers.time_step", in.layers.time_step, stage.youngs_modulus);
+  }
+  return stage;
 }
 
 void check_drag(const input::Input& in, const Sizes& sizes, double time_step) {
@@ -84,9 +101,9 @@ void check_periodic(const input::Input& in, const Scene& scene) {
 }
 
 // What a window left frozen needs a time of its own to come to rest under what was put onto it (doc/theory.md).
-double choose_thaw(const input::Dynamics& dynamics) {
+double choose_thaw(const input::Input& in) {
   constexpr double usual = 0.9;  // [s]
-  return dynamics.thaw.value_or(dynamics.window > 0 ? usual : 0.0);
+  return in.dynamics.thaw.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
 }
 
 // Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
@@ -94,7 +111,8 @@ double choose_thaw(const input::Dynamics& dynamics) {
 double largest_force(const Scene& scene) {
   const input::Input& in = scene.in;
   const double r = scene.sizes.largest();
-  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles) * std::sqrt(r);  // against a rigid wall: r* = r, m* = m
+  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles, in.particles.youngs_modulus) *
+                   std::sqrt(r);  // against a rigid wall: r* = r, m* = m
   const double m = mass(in.particles, r);
   const double drop = scene.box.height() + 2.0 * in.layers.thickness;
   const double speed = impact_speed(in, drop);
@@ -152,7 +170,9 @@ double contact_duration(double reduced_mass, double reduced_radius, double reduc
          std::pow(reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed), 0.2);
 }
 
-double safe_time_step(const input::Input& in, const Sizes& sizes) { return step_limit(in, sizes.smallest()); }
+double safe_time_step(const input::Input& in, const Sizes& sizes) {
+  return step_limit(in, sizes.smallest(), in.particles.youngs_modulus);
+}
 
 Scene build(const input::Input& in) {
   Scene scene;
@@ -163,9 +183,11 @@ Scene build(const input::Input& in) {
   scene.reach = 2.0 * scene.sizes.largest();
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
   scene.skin = skin_per_radius * scene.sizes.largest();
-  scene.time_step = choose_time_step(in, scene.sizes);
-  scene.thaw = choose_thaw(in.dynamics);
-  if (scene.features.drag) check_drag(in, scene.sizes, scene.time_step);
+  scene.time_step =
+      choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
+  scene.settling = choose_settling(in, scene.sizes, scene.time_step);
+  scene.thaw = choose_thaw(in);
+  if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
   check_periodic(in, scene);
   scene.force_quantum = choose_quantum(scene);
   return scene;

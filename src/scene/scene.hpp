@@ -23,6 +23,12 @@ struct Features {
   friend constexpr bool operator==(const Features&, const Features&) = default;
 };
 
+/// How particles are integrated for a while.
+struct Stage {
+  double time_step = 0.0;       ///< [s]
+  double youngs_modulus = 0.0;  ///< [Pa]
+};
+
 /// The scene. `in` is what was asked; the rest is derived from it.
 struct Scene {
   input::Input in;
@@ -31,12 +37,15 @@ struct Scene {
   Sizes sizes;             ///< the size distribution: radius of (layer, particle), bounds
   double reach = 0.0;      ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
   double skin = 0.0;       ///< [m] added to reach in neighbour lists; does not change any result
-  double time_step = 0.0;  ///< [s]
+  double time_step = 0.0;  ///< [s] of the final stage, and of the layers unless they have their own
+  Stage settling;          ///< of the layers
   double thaw = 0.0;       ///< [s] duration of the final stage
   double force_quantum = 0.0;  ///< [N] a power of two: forces are summed as integers of this unit
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].
   [[nodiscard]] double column_width() const noexcept { return reach + skin; }
+  /// The final stage, once it is hard.
+  [[nodiscard]] Stage last() const noexcept { return {time_step, in.particles.youngs_modulus}; }
 };
 
 /// Derive the scene from the input. Local and pure. Throws Error(bad_input) on cross-checks that involve derived

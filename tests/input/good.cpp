@@ -71,7 +71,10 @@ cutoff = "50 mm"
 rotation = true
 theta = 0
 time_step = "0.1 ms"
-stop = "duration"
+stop = "settled"
+settled_energy = 1e-3
+settled_drift = 2e-3
+settled_hold = "0.1 s"
 precision = "double"
 window = 3
 thaw = "0.6 s"
@@ -135,6 +138,9 @@ TEST(GoodInput, EveryForceAndProgramKeyArrives) {
   EXPECT_EQ(in.near_field->beta2, 4.0);
   EXPECT_EQ(in.near_field->cutoff, 0.05);
   EXPECT_EQ(in.dynamics.time_step, 1e-4);
+  EXPECT_EQ(in.dynamics.stop, StopRule::settled);
+  EXPECT_EQ(in.dynamics.settled_drift, 2e-3);
+  EXPECT_EQ(in.dynamics.settled_hold, 0.1);
   EXPECT_EQ(in.dynamics.window, 3);
   EXPECT_EQ(in.dynamics.thaw, 0.6);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);

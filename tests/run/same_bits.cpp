@@ -126,6 +126,19 @@ TEST(SameBitsWithAWindow, OfTwoGradedPeriodicLayers) {
   expect_one_pack(window_scene(3, true, true, false, 2), {1, 2, 4});
 }
 
+// Everything that shortens a run at once: soft layers in large steps, ended when they have settled.
+TEST(SameBitsWithAWindow, OfSoftLayersThatSettle) {
+  input::Input in = window_scene(3, false, false, false, 1);
+  in.layers.youngs_modulus = 1e7;
+  in.layers.time_step = 2e-4;
+  in.layers.duration = 0.08;
+  in.dynamics.stop = input::StopRule::settled;
+  in.dynamics.settled_energy = 0.3;
+  in.dynamics.settled_drift = 0.3;
+  in.dynamics.settled_hold = 0.01;
+  expect_one_pack(in, {1, 3, 4});
+}
+
 TEST(SameBitsWithAWindow, OfOneLayerInThePlaneWithANearField) {
   expect_one_pack(window_scene(2, true, false, true, 1), {1, 6});
 }

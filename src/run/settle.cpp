@@ -1,0 +1,141 @@
+#include "run/settle.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/log.hpp"
+#include "observe/measure.hpp"
+
+namespace packmpi::run {
+namespace {
+
+// Share of a part over which its creep is measured.
+constexpr double creep_share = 0.1;
+// Looks at the criteria of stop = "settled" in the time for which they must hold.
+constexpr int looks_a_hold = 10;
+// 2^6 stairs of the hardening ramp: six square roots give the ratio.
+constexpr int stair_roots = 6;
+
+std::int64_t steps_in(double seconds, double time_step) {
+  return std::max<std::int64_t>(1, std::llround(seconds / time_step));
+}
+
+// When a part of the run must be interrupted, in steps from its beginning.
+struct Plan {
+  scene::Stage stage;
+  std::int64_t steps;       // in all
+  std::int64_t log_every;   // steps between rows of the step log
+  std::int64_t look_every;  // steps between looks at the criteria; 0: none
+  std::int64_t creep_from;
+  std::vector<double> ramp;  // moduli; the last one from half the steps on
+
+  [[nodiscard]] std::int64_t ramp_start(std::size_t stair) const {
+    return static_cast<std::int64_t>(stair) * (steps / 2) / std::max<std::int64_t>(1, std::ssize(ramp) - 1);
+  }
+  [[nodiscard]] double modulus(std::int64_t done) const {
+    std::size_t stair = ramp.size() - 1;
+    while (stair > 0 && ramp_start(stair) > done) --stair;
+    return ramp[stair];
+  }
+  [[nodiscard]] std::int64_t next(std::int64_t done) const {
+    std::int64_t stop = std::min(steps, (done / log_every + 1) * log_every);
+    if (look_every > 0) stop = std::min(stop, (done / look_every + 1) * look_every);
+    if (done < creep_from) stop = std::min(stop, creep_from);
+    for (std::size_t stair = 1; stair < ramp.size(); ++stair) {
+      if (ramp_start(stair) > done) return std::min(stop, ramp_start(stair));
+    }
+    return stop;
+  }
+};
+
+Plan plan_of(const scene::Scene& scene, Part part) {
+  const bool layer = part == Part::layer;
+  const scene::Stage stage = layer ? scene.settling : scene.last();
+  const double seconds = layer ? scene.in.layers.duration : scene.thaw;
+  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : stage.time_step;
+  Plan plan{.stage = stage,
+            .steps = steps_in(seconds, stage.time_step),
+            .log_every = steps_in(interval, stage.time_step),
+            .look_every = 0,
+            .creep_from = 0,
+            .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
+  if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
+    plan.look_every = steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
+  }
+  plan.creep_from = plan.steps - std::max<std::int64_t>(1, std::llround(creep_share * static_cast<double>(plan.steps)));
+  return plan;
+}
+
+double phi_of_moving(const Pile& pile) { return observe::density(pile.comm, pile.store, pile.scene).phi_bulk; }
+
+// Looks whether the moving particles have come to rest, and for how long. True if long enough.
+bool has_settled(const Pile& pile, const Plan& plan, Course& course) {
+  const input::Dynamics& limits = pile.scene.in.dynamics;
+  const double g = pile.scene.in.jamming.gravity;
+  const double d = 2.0 * pile.scene.sizes.mean();
+  const observe::Motion motion = observe::motion(pile.comm, pile.store, pile.scene);
+  const double time = static_cast<double>(plan.look_every) * plan.stage.time_step;
+  const double energy = motion.kinetic_energy / (motion.mass * g * d);
+  const double drift = std::abs(motion.mean_height - course.mean_height) / time / std::sqrt(g * d);
+  course.mean_height = motion.mean_height;
+  log::debug(fmt::format("KE/(m g d) {:.2e}, drift/sqrt(g d) {:.2e} after {:.4g} s", energy, drift,
+                         static_cast<double>(course.done) * plan.stage.time_step));
+  if (!(energy < limits.settled_energy && drift < limits.settled_drift)) {
+    course.calm_since = -1;
+    return false;
+  }
+  if (course.calm_since < 0) {
+    course.calm_since = course.done;
+    course.phi_calm = phi_of_moving(pile);
+  }
+  return static_cast<double>(course.done - course.calm_since) * plan.stage.time_step >=
+         limits.settled_hold * (1.0 - 1e-9);
+}
+
+Settled result(const Pile& pile, const Plan& plan, const Course& course, bool early) {
+  const double before = early ? course.phi_calm : course.phi_before;
+  const std::int64_t since = early ? course.calm_since : plan.creep_from;
+  const double time = static_cast<double>(course.done - since) * plan.stage.time_step;
+  return {.steps = course.done,
+          .seconds = static_cast<double>(course.done) * plan.stage.time_step,
+          .creep = (phi_of_moving(pile) - before) / time,
+          .early = early};
+}
+
+}  // namespace
+
+std::vector<double> hardening(double soft, double hard) {
+  if (!(soft < hard)) return {hard};
+  double ratio = hard / soft;
+  for (int root = 0; root < stair_roots; ++root) ratio = std::sqrt(ratio);
+  std::vector<double> moduli{soft};
+  for (int stair = 1; stair < (1 << stair_roots); ++stair) moduli.push_back(std::min(hard, moduli.back() * ratio));
+  moduli.push_back(hard);
+  return moduli;
+}
+
+Settled settle(Pile& pile, Journal& journal, Part part, Course& course) {
+  const Plan plan = plan_of(pile.scene, part);
+  if (plan.look_every > 0 && course.done == 0) {
+    course.mean_height = observe::motion(pile.comm, pile.store, pile.scene).mean_height;
+  }
+  bool early = false;
+  while (course.done < plan.steps && !early) {
+    if (course.done == plan.creep_from) course.phi_before = phi_of_moving(pile);
+    const std::int64_t next = plan.next(course.done);
+    pile.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
+    pile.stepper.advance(pile.store, pile.neighborhood, next - course.done);
+    pile.steps += next - course.done;
+    if (part == Part::thaw) pile.thaw_steps += next - course.done;
+    course.done = next;
+    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(pile, plan, course);
+    if (next % plan.log_every == 0 || next == plan.steps || early) {
+      journal.moment(static_cast<double>(next) / static_cast<double>(plan.steps));
+    }
+  }
+  return result(pile, plan, course, early);
+}
+
+}  // namespace packmpi::run

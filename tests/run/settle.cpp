@@ -1,0 +1,133 @@
+// The parts of a run: when a layer ends, what the final stage does, and what is written of them.
+#include "run/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "run/make_pack.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi::run {
+namespace {
+
+// A coarse brick that fills in a few seconds of machine time.
+input::Input brick() {
+  input::Input in = test::small_input(3, 0.4, 0.02);
+  in.name = "settle";
+  in.container.size = {0.4, 0.4, 0.3};
+  in.layers.thickness = 0.12;
+  in.layers.fraction = 0.22;
+  in.layers.duration = 0.8;
+  in.layers.maximum = 4;
+  in.drag.coefficient = 0.005;
+  in.dynamics.time_step = 2e-4;
+  in.output.log_every = 0.05;
+  return in;
+}
+
+output::RunRecord pack(const input::Input& in) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  Options options;
+  options.folder = std::filesystem::temp_directory_path() / ("packmpi_settle_" + std::to_string(::getppid()));
+  options.force = true;
+  options.verbosity = log::Verbosity::quiet;
+  const output::RunRecord record = make_pack(comm, scene::build(in), options);
+  comm.barrier();
+  if (comm.rank() == 0) std::filesystem::remove_all(options.folder);
+  comm.barrier();
+  return record;
+}
+
+void expect_sound(const output::RunRecord& record) {
+  EXPECT_EQ(record.audit.found, record.audit.expected);
+  EXPECT_EQ(record.audit.outside, 0);
+  EXPECT_EQ(record.audit.non_finite, 0);
+  EXPECT_LT(record.audit.worst_overlap, 0.02);
+  EXPECT_NEAR(record.floor_force, record.weight, 0.1 * record.weight);
+}
+
+TEST(Settle, HardeningRisesInEqualRatiosToTheHardModulus) {
+  EXPECT_EQ(hardening(1e8, 1e8), std::vector<double>{1e8});
+  const std::vector<double> moduli = hardening(1e7, 1e8);
+  ASSERT_EQ(moduli.size(), 65U);
+  EXPECT_EQ(moduli.front(), 1e7);
+  EXPECT_EQ(moduli.back(), 1e8);
+  for (std::size_t k = 1; k < moduli.size(); ++k) {
+    EXPECT_NEAR(moduli[k] / moduli[k - 1], std::pow(10.0, 1.0 / 64.0), 1e-12);
+  }
+}
+
+TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
+  input::Input in = brick();
+  in.dynamics.window = 1;
+  in.dynamics.thaw = 0.4;
+  const output::RunRecord record = pack(in);
+  expect_sound(record);
+  std::int64_t expected = 0;
+  for (const output::LayerRow& row : record.layers) {
+    EXPECT_EQ(row.steps, 4000);
+    expected += row.steps * row.inserted;
+  }
+  EXPECT_EQ(record.thaws, 1);
+  EXPECT_EQ(record.thaw_steps, 2000);
+  EXPECT_EQ(record.particle_steps, expected + record.thaw_steps * record.particles);
+  EXPECT_LT(record.height, record.height_before_thaw + 1e-3);
+}
+
+TEST(Settle, AWindowOfAllLayersIsNoWindow) {
+  input::Input in = brick();
+  in.dynamics.thaw = 0.1;
+  const output::RunRecord all = pack(in);
+  in.dynamics.window = 4;
+  const output::RunRecord window = pack(in);
+  EXPECT_EQ(window.particle_steps, all.particle_steps);
+  EXPECT_EQ(window.height, all.height);
+  EXPECT_EQ(window.phi_bulk, all.phi_bulk);
+  EXPECT_EQ(window.kinetic_energy, all.kinetic_energy);
+}
+
+TEST(Settle, StopsALayerOnceItIsCalm) {
+  input::Input in = brick();
+  in.layers.duration = 3.0;
+  in.layers.maximum = 2;
+  in.dynamics.stop = input::StopRule::settled;
+  in.dynamics.settled_energy = 1e-2;
+  in.dynamics.settled_drift = 1e-2;
+  in.dynamics.settled_hold = 0.05;
+  const output::RunRecord record = pack(in);
+  for (const output::LayerRow& row : record.layers) {
+    EXPECT_EQ(row.stop_reason, "settled");
+    EXPECT_LT(row.duration, 1.5);
+    EXPECT_GT(row.duration, 0.3);  // it takes that long to fall
+    EXPECT_LT(row.kinetic_per_mgd, 1e-2);
+    EXPECT_EQ(row.steps % 25, 0);  // looks every 5 ms
+  }
+  in.dynamics.settled_energy = 1e-30;  // never
+  in.layers.duration = 0.4;
+  for (const output::LayerRow& row : pack(in).layers) {
+    EXPECT_EQ(row.stop_reason, "duration");
+    EXPECT_EQ(row.steps, 2000);
+  }
+}
+
+TEST(Settle, SoftLayersEndAsHardAsTheOthers) {
+  input::Input in = brick();
+  in.layers.maximum = 3;
+  in.layers.duration = 1.5;  // at rest, or impacts of the last to fall set the largest overlap
+  in.dynamics.thaw = 0.6;
+  const output::RunRecord hard = pack(in);
+  in.layers.youngs_modulus = 1e7;
+  in.layers.time_step = 5e-4;
+  const output::RunRecord soft = pack(in);
+  expect_sound(soft);
+  EXPECT_GT(soft.layers.back().max_overlap, 2.0 * hard.layers.back().max_overlap);  // (E ratio)^(2/3) is 4.6
+  EXPECT_NEAR(soft.mean_overlap, hard.mean_overlap, 0.25 * hard.mean_overlap);
+  EXPECT_EQ(soft.layers.front().steps, 3000);
+  EXPECT_EQ(soft.time_step, 2e-4);
+  EXPECT_NEAR(soft.duration, 3 * 1.5 + 0.6, 1e-9);
+}
+
+}  // namespace
+}  // namespace packmpi::run
