@@ -109,7 +109,7 @@ std::vector<Key> general_keys() {
           "Names the pack among all packs of the scene: radii and positions are functions of it."),
     later({"balanced", "draft"},
       word_of("fidelity", at(&Input::fidelity), {"paper", "balanced", "draft"}, "paper",
-          "Protocol: \"paper\" is a fixed time step and duration, and every particle moves.")),
+          "Protocol: \"paper\" is a fixed time step and duration, and every particle moves, unless other keys change it.")),
   };
 }
 
