@@ -61,17 +61,22 @@ def has_type(value, kind):
     shape, name = re.match(r"(?:\((.*)\) )?(\w+)$", kind).groups()
     array = value if isinstance(value, h5py.Dataset) else np.asarray(value)
     axes = len(shape.split(",")) if shape else 0
-    return array.ndim == axes and (array.dtype.kind == "S" if name == "text" else array.dtype == np.dtype(TYPES[name]))
+    return array.ndim == axes and (array.dtype.kind in "SU" if name == "text" else array.dtype == np.dtype(TYPES[name]))
+
+
+def text(value):
+    """Attributes in UTF-8 come as str or as bytes, depending on the version of h5py."""
+    return value.decode() if isinstance(value, bytes) else value
 
 
 def check_units(pack, table):
-    listed = dict(item.split(": ") for item in pack["summary"].attrs["units"].decode().split("; "))
+    listed = dict(item.split(": ") for item in text(pack["summary"].attrs["units"]).split("; "))
     for path, (_, unit, _) in table.items():
         if path.startswith("/summary/@") and path != "/summary/@units":
             name = path.split("@")[1]
             expect(listed.get(name, "") == unit, f"{path}: unit {listed.get(name)!r} in the file, {unit!r} on the page")
         elif "@" not in path and path in pack:
-            there = pack[path].attrs.get("unit", b"").decode()
+            there = text(pack[path].attrs.get("unit", ""))
             expect(there == unit, f"{path}: unit {there!r} in the file, {unit!r} on the page")
 
 
