@@ -76,6 +76,25 @@ TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
   EXPECT_LT(record.height, record.height_before_thaw + 1e-3);
 }
 
+TEST(Settle, MoreLayersFollowIfThePileSinksInTheThaw) {
+  input::Input in = brick();
+  in.layers.duration = 0.4;  // short: much is left to the thaw
+  in.layers.maximum = 3;
+  in.dynamics.window = 1;
+  in.dynamics.thaw = 0.8;
+  const output::RunRecord three = pack(in);
+  ASSERT_LT(three.height, three.height_before_thaw - 1e-3);
+  in.container.size.back() = 0.5 * (three.height + three.height_before_thaw);  // reached before it, missed after it
+  in.layers.maximum = 0;
+  const output::RunRecord record = pack(in);
+  EXPECT_EQ(record.layers.size(), 4U);
+  EXPECT_EQ(record.thaws, 2);
+  EXPECT_EQ(record.thaw_steps, 8000);
+  EXPECT_TRUE(record.reached);
+  EXPECT_EQ(record.stop_reason, "height");
+  expect_sound(record);
+}
+
 TEST(Settle, AWindowOfAllLayersIsNoWindow) {
   input::Input in = brick();
   in.dynamics.thaw = 0.1;
