@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "input/rhythm.hpp"
 #include "input/words.hpp"
 
 namespace packmpi::input {
@@ -180,6 +181,15 @@ void check_features(const Case& scene) {
   }
 }
 
+void check_checkpoint(const Case& scene) {
+  const std::string& every = scene.in.checkpoint.every;
+  if (rhythm_of(every)) return;
+  scene.refuse("checkpoint.every",
+               fmt::format("is {}; give a wall time such as \"10min\", \"90 s\" or \"2h\", steps such as "
+                           "\"5000 steps\", or \"off\"",
+                           toml_string(every)));
+}
+
 }  // namespace
 
 void check(const Input& in, const Document& document) {
@@ -191,6 +201,7 @@ void check(const Input& in, const Document& document) {
   check_time(scene);
   check_stages(scene);
   check_features(scene);
+  check_checkpoint(scene);
 }
 
 }  // namespace packmpi::input

@@ -101,7 +101,7 @@ struct Ensemble {  ///< only 1 x 1 in this version
 };
 
 struct Checkpoint {
-  std::string every;  ///< no checkpoints in this version
+  std::string every = "10min";  ///< see rhythm_of()
 };
 
 struct Output {

@@ -73,17 +73,13 @@ Key when(Condition condition, Key key) {
   return key;
 }
 
-/// Recognised, and refused: words, any number but one, or the key as a whole.
+/// Recognised, and refused: words, or any number but one.
 Key later(std::vector<Text> words, Key key) {
   key.later = std::move(words);
   return key;
 }
 Key only(double value, Key key) {
   key.only = value;
-  return key;
-}
-Key refused(Key key) {
-  key.refused = true;
   return key;
 }
 
@@ -252,7 +248,8 @@ std::vector<Key> program_keys() {
          "How lateral columns are shared among ranks: slices, pencils, or METIS parts. Changes no bit of the pack."),
     only(1, whole("ensemble.sets", at(&Input::ensemble, &Ensemble::sets), between(1, 1 << 24), "1", "Sets of packs.")),
     only(1, whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 24), "1", "Packs of a set.")),
-    refused(word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("")", "Wall time between checkpoints.")),
+    word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("10min")",
+         "Wall time between checkpoints (\"30 s\", \"10min\", \"2h\"), or time steps (\"5000 steps\"); \"off\": only when told to stop."),
     word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),
     real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
          "Simulated time between rows of NAME.steps.csv; 0: a row each step."),

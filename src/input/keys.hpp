@@ -54,9 +54,8 @@ struct Key {
   std::vector<std::string_view> choices = {};  ///< words of a text key; those of an enumeration are known by its type
   std::vector<std::string_view> later = {};    ///< words that are recognised and refused
   std::optional<double> only = {};             ///< the one number that is not refused
-  bool refused = false;                        ///< the whole key is recognised and refused
 
-  [[nodiscard]] bool applies(const Input& in) const { return !refused && (when.holds == nullptr || when.holds(in)); }
+  [[nodiscard]] bool applies(const Input& in) const { return when.holds == nullptr || when.holds(in); }
 };
 
 /// The table, in the order of reading: a key stands after those that its condition, count and default look at.

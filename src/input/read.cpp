@@ -87,7 +87,6 @@ void refuse_later(const Document& document) {
   for (const Key& key : keys()) {
     const Node* node = document.find(key.path);
     if (node == nullptr) continue;
-    if (key.refused) fail(node->place, key.path, "is not available in this version; remove it");
     const auto* text = std::get_if<std::string>(&node->value);
     if (text == nullptr || std::ranges::find(key.later, *text) == key.later.end()) continue;
     fail(node->place, key.path,

@@ -40,7 +40,6 @@ std::string doc_cell(const Key& key) {
   if (!key.when.words.empty()) text += fmt::format(" Only if {}.", key.when.words);
   if (!key.later.empty()) text += fmt::format(" Not available in this version: {}.", joined(key.later, "and"));
   if (key.only) text += fmt::format(" Only {:g} is available in this version.", *key.only);
-  if (key.refused) text += " Not available in this version.";
   return text;
 }
 

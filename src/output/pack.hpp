@@ -40,6 +40,9 @@ struct PackRows {
 /// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure).
 [[nodiscard]] PackRows read_pack(const std::string& path);
 
+/// Rank-local. Whether PATH is a pack, sound or not, rather than another file.
+[[nodiscard]] bool is_pack(const std::string& path);
+
 /// Collective. Throws Error(io_failure) unless `folder` exists or can be made, a file can be created in it, and `bytes`
 /// of disk space are free. A folder that had to be made stays, unless the check fails; no file is left behind.
 void check_writable(const comm::Comm& comm, const std::string& folder, std::int64_t bytes);

@@ -69,6 +69,15 @@ PackRows read_file(const std::string& path) {
 
 }  // namespace
 
+bool is_pack(const std::string& path) {
+  const h5::Quiet quiet;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return false;
+  const bool pack = H5Lexists(file, "/summary", H5P_DEFAULT) > 0;
+  H5Fclose(file);
+  return pack;
+}
+
 PackRows read_pack(const std::string& path) {
   const h5::Quiet quiet;
   try {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "comm/comm.hpp"
@@ -37,9 +38,11 @@ struct StepRow {
 /// disk when append() returns. A failed write is told at close().
 class StepLog {
  public:
-  StepLog(const comm::Comm& comm, const std::string& path);  ///< collective; Error(io_failure) on all ranks
-  void append(const StepRow& row);                           ///< local; no-op but on rank 0
-  void close();                                              ///< collective; Error(io_failure) on all ranks
+  /// Collective. A new series; or, if `last_step` is given, the one that is there up to and with that step, which goes
+  /// on. Error(io_failure) on all ranks.
+  StepLog(const comm::Comm& comm, const std::string& path, std::optional<std::int64_t> last_step = {});
+  void append(const StepRow& row);  ///< local; no-op but on rank 0
+  void close();                     ///< collective; Error(io_failure) on all ranks
 
  private:
   void flush();

@@ -1,18 +1,42 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 
 #include "output/files.hpp"
 #include "output/report.hpp"
 
 namespace packmpi::output {
+namespace {
 
-StepLog::StepLog(const comm::Comm& comm, const std::string& path) : comm_(&comm), path_(path) {
+/// The whole lines of a series up to and with step `last`; "" if there is none.
+std::string rows_until(const std::string& path, std::int64_t last) {
+  std::ifstream file(path);
+  std::string kept;
+  for (std::string line; std::getline(file, line) && !file.eof();) {  // eof: the line was cut off
+    if (!kept.empty()) {
+      const std::size_t comma = line.find(',');
+      std::int64_t step = -1;
+      if (comma != std::string::npos) std::from_chars(line.data() + comma + 1, line.data() + line.size(), step);
+      if (step < 0 || step > last) break;
+    }
+    kept += line + "\n";
+  }
+  return kept;
+}
+
+}  // namespace
+
+StepLog::StepLog(const comm::Comm& comm, const std::string& path, std::optional<std::int64_t> last_step)
+    : comm_(&comm), path_(path) {
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0) return;
-    file_.open(path, std::ios::trunc);
+    const std::string kept = last_step ? rows_until(path, *last_step) : "";
+    if (!kept.empty()) write_whole(path, kept);
+    file_.open(path, kept.empty() ? std::ios::trunc : std::ios::app);
     if (!file_) fail(path, "open", errno);
+    if (!kept.empty()) return;
     file_ << "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
              "[N],rebuilds,moving\n";
     flush();

@@ -2,7 +2,10 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
 #include "packmpi/version.hpp"
@@ -15,17 +18,24 @@ constexpr const char* about =
     "packmpi: dense random packs of spheres for DEM, layer by layer, on any number of MPI ranks.\n"
     "  packmpi [run] SCENE.toml    make the pack: NAME.hdf, NAME.json, NAME.log, NAME.steps.csv\n"
     "  packmpi check SCENE.toml    read and check the scene, print every key as it will be used, do nothing\n"
+    "  packmpi info FILE           what a pack or a checkpoint is; verify it\n"
+    "Signals: USR1 checkpoint; USR2, TERM, INT checkpoint and end. A file STOP in the output folder ends it, too.\n"
     "Exit codes: 0 done; 2 bad input or usage; 3 finished but a target was missed; 4 numerical failure; 5 "
-    "input/output.";
+    "input/output; "
+    "6 checkpoint unusable; 75 stopped early with a checkpoint: --restart auto goes on.";
 
 std::string version_text() { return fmt::format("packmpi {} ({}, {})\n", version(), git_id(), compiler()); }
 
-// "run" and "check" may stand before the scene; "run" is understood otherwise.
+// A command may stand before the scene; "run" is understood otherwise.
 Command take_command(std::vector<std::string>& words) {
-  if (words.empty() || (words.front() != "run" && words.front() != "check")) return Command::run;
-  const Command command = words.front() == "check" ? Command::check : Command::run;
-  words.erase(words.begin());
-  return command;
+  constexpr std::array<std::pair<std::string_view, Command>, 3> commands{
+      {{"run", Command::run}, {"check", Command::check}, {"info", Command::info}}};
+  for (const auto& [name, command] : commands) {
+    if (words.empty() || words.front() != name) continue;
+    words.erase(words.begin());
+    return command;
+  }
+  return Command::run;
 }
 
 }  // namespace
@@ -45,6 +55,11 @@ std::variant<Options, Reply> parse_command_line(int argc, const char* const* arg
       ->allow_extra_args(false);
   app.add_option("--seed", seed, "the same as --set seed=N");
   app.add_flag("--force", options.force, "replace outputs that exist");
+  app.add_option("--restart", options.restart, "go on from a checkpoint: auto (the newest sound one) or its file")
+      ->type_name("auto|FILE");
+  app.add_option("--max-hours", options.max_hours, "write a checkpoint and end (code 75) before so much wall time")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--max-steps", options.max_steps, "the same after so many time steps")->check(CLI::PositiveNumber);
   app.add_flag("-q,--quiet", quiet, "say only warnings, errors and the result");
   app.add_flag("-v,--verbose", verbose, "say more");
   app.add_flag("--version", show_version, "print version, git id and compiler");

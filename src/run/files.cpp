@@ -11,10 +11,50 @@
 namespace packmpi::run {
 namespace {
 
-constexpr double densest = 0.75;            // no random pile has more solid than this; 2D: 0.91
-constexpr double bytes_a_particle = 112.0;  // of a pack file, VTK's index array included
+constexpr double densest = 0.75;                         // no random pile has more solid than this; 2D: 0.91
+constexpr double bytes_a_particle = 112.0 + 2.0 * 88.0;  // of a pack file and two checkpoints
+
+bool there(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
+void remove_if_there(const std::string& path) {
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
+
+void check_free(const Files& files, const Options& options) {
+  const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, words); };
+  if (there(files.stop)) refuse(files.stop + " exists and would end the run at once; remove it");
+  if (options.force) return;
+  const bool unfinished = there(files.slots[0]) || there(files.slots[1]);
+  if (!options.restart.empty()) {
+    if (options.restart == "auto" && !unfinished && there(files.pack) && there(files.summary)) {
+      refuse(files.pack + " exists and there is no checkpoint: the run is finished; use --force to make it anew");
+    }
+    return;
+  }
+  if (unfinished) {
+    refuse(
+        fmt::format("there are checkpoints of an unfinished run ({}); --restart auto goes on from them, --force "
+                    "begins anew",
+                    there(files.slots[0]) ? files.slots[0] : files.slots[1]));
+  }
+  for (const std::string& path : {files.pack, files.summary, files.log, files.steps}) {
+    if (there(path)) refuse(fmt::format("{} exists; use --force to replace it, or -o FOLDER", path));
+  }
+}
 
 }  // namespace
+
+void remove_checkpoints(const Files& files) {
+  remove_if_there(files.manifest);
+  for (const std::string& slot : files.slots) {
+    remove_if_there(slot);
+    remove_if_there(slot + ".tmp");
+  }
+}
 
 double expected_particles(const scene::Scene& scene) {
   const double height = scene.box.height() + scene.in.layers.thickness;
@@ -24,21 +64,21 @@ double expected_particles(const scene::Scene& scene) {
 
 Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
   const std::string stem = (std::filesystem::path(options.folder) / scene.in.name).string();
-  Files files{stem + ".hdf", stem + ".json", stem + ".log", stem + ".steps.csv"};
+  Files files{.pack = stem + ".hdf",
+              .summary = stem + ".json",
+              .log = stem + ".log",
+              .steps = stem + ".steps.csv",
+              .slots = {stem + ".ckpt.A.hdf", stem + ".ckpt.B.hdf"},
+              .manifest = stem + ".ckpt.json",
+              .stop = (std::filesystem::path(options.folder) / "STOP").string()};
   comm::agree_on(comm, [&] {
-    if (comm.rank() != 0 || options.force) return;
-    for (const std::string& path : {files.pack, files.summary, files.log, files.steps}) {
-      std::error_code ignored;
-      if (std::filesystem::exists(path, ignored)) {
-        throw Error(ExitCode::bad_input, fmt::format("{} exists; use --force to replace it, or -o FOLDER", path));
-      }
-    }
+    if (comm.rank() == 0) check_free(files, options);
   });
   output::check_writable(comm, options.folder, static_cast<std::int64_t>(bytes_a_particle * expected_particles(scene)));
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) {
-      std::error_code ignored;
-      std::filesystem::remove(files.log, ignored);  // --force: a new log, not a longer one
+      if (options.restart.empty()) remove_if_there(files.log);  // --force: a new log, not a longer one
+      if (options.restart.empty()) remove_checkpoints(files);
     }
     log::start(comm.rank(), files.log, options.verbosity);
   });

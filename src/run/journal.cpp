@@ -21,8 +21,15 @@ double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
 
 }  // namespace
 
-Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet)
-    : pile_(pile), steps_(pile.comm, steps_path), terminal_(stdout_is_terminal()), quiet_(quiet) {}
+Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet, bool restarted,
+                 const std::vector<output::LayerRow>& layers)
+    : pile_(pile),
+      steps_(pile.comm, steps_path, restarted ? std::optional(pile.steps) : std::nullopt),
+      terminal_(stdout_is_terminal()),
+      quiet_(quiet),
+      height_(layers.empty() ? 0.0 : layers.back().height),
+      layers_done_(static_cast<int>(layers.size())),
+      layers_before_(layers_done_) {}
 
 void Journal::layer_inserted(const output::LayerRow& row) {
   log::debug(fmt::format("inserted {} particles in {} darts, solid fraction {:.4f} of the region from {:.6g} m up",
@@ -68,7 +75,8 @@ double Journal::seconds_left(double share) const {
       layers * (pile_.scene.thaw / pile_.scene.time_step) / (in.layers.duration / pile_.scene.settling.time_step);
   const double all = moved(layers) + final_stage;
   const double done = moved(layers_done_) + share * (thawing_ ? final_stage : moving(begun));
-  return done > 0.0 ? watch_.seconds() * (all - done) / done : -1.0;
+  const double here = done - moved(layers_before_);  // about: since a restart
+  return here > 0.0 ? watch_.seconds() * (all - done) / here : -1.0;
 }
 
 void Journal::progress(double share, double kinetic_energy, double top) {

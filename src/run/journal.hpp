@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/timer.hpp"
 #include "output/record.hpp"
@@ -13,8 +14,10 @@ namespace packmpi::run {
 /// Progress line with an estimate of the time left (a terminal: one line, rewritten; else a line now and then).
 class Journal {
  public:
-  /// Collective. Opens the step log at `steps_path`.
-  Journal(const Pile& pile, const std::string& steps_path, bool quiet);
+  /// Collective. Opens the step log at `steps_path`; after a restart, which has settled `layers` before, it goes on
+  /// from the step the pile is at.
+  Journal(const Pile& pile, const std::string& steps_path, bool quiet, bool restarted,
+          const std::vector<output::LayerRow>& layers);
 
   void layer_inserted(const output::LayerRow& row);  ///< local
   /// Collective. A row of the step log, and progress; `share` is the part of the layer's (or the final stage's)
@@ -39,6 +42,7 @@ class Journal {
   double last_shown_ = 0.0;
   double height_ = 0.0;  // [m] after the last settled layer
   int layers_done_ = 0;
+  int layers_before_ = 0;  // settled before a restart
   bool thawing_ = false;
 };
 

@@ -12,10 +12,13 @@
 #include "output/pack.hpp"
 #include "output/report.hpp"
 #include "rsa/insert.hpp"
+#include "run/course.hpp"
 #include "run/files.hpp"
 #include "run/journal.hpp"
+#include "run/keeper.hpp"
 #include "run/pile.hpp"
 #include "run/record.hpp"
+#include "run/restart.hpp"
 #include "run/settle.hpp"
 
 namespace packmpi::run {
@@ -46,21 +49,12 @@ void insert_layer(Pile& pile, output::LayerRow& row) {
   row.region_bottom = region.bottom;
 }
 
-void balance(Pile& pile) {
-  if (pile.ownership.rebalance(pile.neighborhood.column_counts(pile.store))) {
-    pile.neighborhood.ownership_changed();
-    log::debug("columns were shared out anew");
-  }
-  pile.neighborhood.rebuild(pile.store);
-}
-
-void settle_layer(Pile& pile, Journal& journal, output::LayerRow& row, output::RunRecord& record) {
-  Course course;
-  const Settled settled = settle(pile, journal, Part::layer, course);
+void settle_layer(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
+  const Settled settled = settle(pile, journal, keeper, Part::layer, stand.course);
   record.creep = settled.creep;
-  row.steps = settled.steps;
-  row.duration = settled.seconds;
-  row.stop_reason = settled.early ? "settled" : "duration";
+  stand.row.steps = settled.steps;
+  stand.row.duration = settled.seconds;
+  stand.row.stop_reason = settled.early ? "settled" : "duration";
 }
 
 void measure_layer(const Pile& pile, output::LayerRow& row) {
@@ -77,39 +71,51 @@ void measure_layer(const Pile& pile, output::LayerRow& row) {
 }
 
 // The final stage: every particle moves for scene.thaw. The height is that after it.
-void thaw(Pile& pile, Journal& journal, output::RunRecord& record) {
+void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
   if (!(pile.scene.thaw > 0.0) && pile.moving_from == 0) return;
   pile.thaw();
-  balance(pile);
+  pile.balance();
   journal.thaw_started();
   record.height_before_thaw = record.height;
   if (pile.scene.thaw > 0.0) {
-    Course course;
-    record.creep = settle(pile, journal, Part::thaw, course).creep;
+    record.creep = settle(pile, journal, keeper, Part::thaw, stand.course).creep;
   }
   ++record.thaws;
   record.height = pile.height();
   journal.thawed(record.height);
 }
 
-// The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. Bounded.
-void pile_up(Pile& pile, Journal& journal, output::RunRecord& record) {
+void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
+  if (stand.phase == output::Phase::insertion) {
+    insert_layer(pile, stand.row);
+    pile.freeze_older();
+    pile.balance();
+    journal.layer_inserted(stand.row);
+    stand.phase = output::Phase::settling;
+  }
+  settle_layer(pile, journal, keeper, stand, record);
+  measure_layer(pile, stand.row);
+  journal.layer_settled(stand.row);
+  record.height = stand.row.height;
+  record.layers.push_back(stand.row);
+}
+
+// The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.
+// Bounded.
+void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
   const std::int64_t most = most_layers(pile.scene);
   const auto more = [&] {
     return record.height < record.height_asked && static_cast<std::int64_t>(record.layers.size()) < most;
   };
-  while (more()) {
-    output::LayerRow row;
-    insert_layer(pile, row);
-    pile.freeze_older();
-    balance(pile);
-    journal.layer_inserted(row);
-    settle_layer(pile, journal, row, record);
-    measure_layer(pile, row);
-    journal.layer_settled(row);
-    record.height = row.height;
-    record.layers.push_back(row);
-    if (!more()) thaw(pile, journal, record);
+  while (stand.phase != output::Phase::insertion || more()) {
+    if (stand.phase == output::Phase::thaw) {
+      thaw(pile, journal, keeper, stand, record);
+      stand = {};
+    } else {
+      insert_and_settle(pile, journal, keeper, stand, record);
+      stand = {.phase = more() ? output::Phase::insertion : output::Phase::thaw};
+    }
+    keeper.layer_ended();
   }
   record.reached = record.height >= record.height_asked;
   record.stop_reason = record.reached ? "height" : "layers.maximum";
@@ -142,13 +148,18 @@ output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   Pile pile(comm, scene);
   output::RunRecord record = asked(comm, scene);
-  Journal journal(pile, files.steps, options.verbosity == log::Verbosity::quiet);
-  pile_up(pile, journal, record);
+  Stand stand;
+  const Origin origin = resume(files, options, pile, stand, record);
+  Keeper keeper(pile, stand, record, files, options, origin);
+  Journal journal(pile, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted, record.layers);
+  pile_up(pile, journal, keeper, stand, record);
   journal.finish();
   got(pile, record);
   record.wall_seconds = comm.max(watch.seconds());
-  record.particle_steps_per_second = static_cast<double>(record.particle_steps) / record.wall_seconds;
+  record.particle_steps_per_second =
+      static_cast<double>(record.particle_steps - pile.earlier_particle_steps) / record.wall_seconds;
   write_outputs(pile, files, record);
+  keeper.finished();
   return record;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/log.hpp"
 #include "observe/measure.hpp"
 
 namespace packmpi::run {
@@ -42,6 +43,16 @@ double Pile::height() const {
   const std::array<const particles::Store*, 2> all{&store, &neighborhood.frozen()};
   return observe::surface_height(comm, all, scene);
 }
+
+void Pile::balance() {
+  if (ownership.rebalance(neighborhood.column_counts(store))) {
+    neighborhood.ownership_changed();
+    log::debug("columns were shared out anew");
+  }
+  neighborhood.rebuild(store);
+}
+
+std::int64_t Pile::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.particle_steps()); }
 
 std::vector<std::int32_t> Pile::layers() const {
   std::vector<std::int32_t> layer;

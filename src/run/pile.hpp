@@ -26,9 +26,14 @@ struct Pile {
   GlobalId moving_from = 0;         ///< particles with smaller ids are frozen: in neighborhood.frozen(), not in store
   GlobalId count = 0;               ///< particles on all ranks
   std::int64_t steps = 0;
-  std::int64_t thaw_steps = 0;  ///< of them, in final stages
+  std::int64_t thaw_steps = 0;              ///< of them, in final stages
+  std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
 
-  [[nodiscard]] double time() const;  ///< [s] simulated
+  [[nodiscard]] double time() const;                  ///< [s] simulated
+  [[nodiscard]] std::int64_t particle_steps() const;  ///< since the beginning, on all ranks. Collective
+
+  /// Collective. Shares the columns out anew if that pays, and makes the lists.
+  void balance();
 
   /// Freezes all layers but the newest dynamics.window, if there are older ones and a window. Then rebuild. Every rank
   /// alike.

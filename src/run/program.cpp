@@ -9,7 +9,9 @@
 #include "comm/session.hpp"
 #include "output/report.hpp"
 #include "run/files.hpp"
+#include "run/info.hpp"
 #include "run/make_pack.hpp"
+#include "run/signals.hpp"
 #include "scene/ownership.hpp"
 
 namespace packmpi::run {
@@ -40,6 +42,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
 }
 
 int make(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const Signals signals;
   const output::RunRecord record = make_pack(comm, scene, options);
   const bool met = targets_met(record);
   if (comm.rank() == 0) {
@@ -53,6 +56,11 @@ int make(const comm::Comm& comm, const scene::Scene& scene, const Options& optio
 
 int act(const comm::Comm& comm, const Options& options) {
   log::start(comm.rank(), std::nullopt, options.verbosity);
+  if (options.command == Command::info) {
+    const std::string words = describe_file(comm, options.scene);
+    if (comm.rank() == 0) fmt::print("{}", words);
+    return 0;
+  }
   const input::Input in = input::read(comm, options.scene, options.overrides);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
@@ -73,7 +81,8 @@ int program(MPI_Comm world, int argc, const char* const* argv) {
   try {
     code = act(comm, std::get<Options>(parsed));
   } catch (const Error& error) {  // thrown on every rank alike
-    if (comm.rank() == 0) log::error(error.what());
+    const bool stopped = error.code() == ExitCode::stopped_early;
+    if (comm.rank() == 0) stopped ? log::warn(error.what()) : log::error(error.what());
     code = static_cast<int>(error.code());
   } catch (const std::exception& error) {  // one rank alone: the others may wait for it
     comm::abort_all(static_cast<int>(ExitCode::numerical_failure),

@@ -94,7 +94,7 @@ void got(const Pile& pile, output::RunRecord& record) {
   record.steps = pile.steps;
   record.thaw_steps = pile.thaw_steps;
   record.duration = pile.time();
-  record.particle_steps = comm.sum(pile.stepper.particle_steps());
+  record.particle_steps = pile.particle_steps();
   record.bytes_per_particle = pile.bytes_per_particle();
   audit(pile, contacts, record);
 }

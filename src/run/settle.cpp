@@ -116,7 +116,7 @@ std::vector<double> hardening(double soft, double hard) {
   return moduli;
 }
 
-Settled settle(Pile& pile, Journal& journal, Part part, Course& course) {
+Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& course) {
   const Plan plan = plan_of(pile.scene, part);
   if (plan.look_every > 0 && course.done == 0) {
     course.mean_height = observe::motion(pile.comm, pile.store, pile.scene).mean_height;
@@ -124,7 +124,7 @@ Settled settle(Pile& pile, Journal& journal, Part part, Course& course) {
   bool early = false;
   while (course.done < plan.steps && !early) {
     if (course.done == plan.creep_from) course.phi_before = phi_of_moving(pile);
-    const std::int64_t next = plan.next(course.done);
+    const std::int64_t next = std::min(plan.next(course.done), course.done + keeper.steps_to_look());
     pile.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
     pile.stepper.advance(pile.store, pile.neighborhood, next - course.done);
     pile.steps += next - course.done;
@@ -134,6 +134,7 @@ Settled settle(Pile& pile, Journal& journal, Part part, Course& course) {
     if (next % plan.log_every == 0 || next == plan.steps || early) {
       journal.moment(static_cast<double>(next) / static_cast<double>(plan.steps));
     }
+    if (!early) keeper.look();  // a part that is over goes on with what comes after it
   }
   return result(pile, plan, course, early);
 }

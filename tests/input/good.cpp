@@ -7,6 +7,7 @@
 
 #include "input/keys.hpp"
 #include "input/read.hpp"
+#include "input/rhythm.hpp"
 #include "input/units.hpp"
 
 namespace packmpi::input {
@@ -209,7 +210,7 @@ TEST(GoodInput, EffectiveInputIsAFixedPointAndHidesNothing) {
   }
   const std::string effective = parse(full, "a.toml", {}).effective;
   for (const Key& key : keys()) {
-    if (key.refused || key.path == "particles.radius.value") continue;
+    if (key.path == "particles.radius.value") continue;
     std::string line(key.path.substr(key.path.rfind('.') + 1));
     line.insert(0, 1, '\n').append(" = ");
     EXPECT_NE(("\n" + effective).find(line), std::string::npos) << key.path;
@@ -238,6 +239,20 @@ TEST(Units, AreExact) {
   for (const char* wrong :
        {"", "mm", "1", "1 MM", "1 m m", "nan m", "inf m", "0x1p3 m", "1e m", "1e99999 m", "--1 m"}) {
     EXPECT_FALSE(metres(wrong).has_value()) << wrong;
+  }
+}
+
+TEST(Rhythm, OfCheckpoints) {
+  EXPECT_EQ(rhythm_of("10min")->seconds, 600.0);
+  EXPECT_EQ(rhythm_of("90 s")->seconds, 90.0);
+  EXPECT_EQ(rhythm_of("1.5h")->seconds, 5400.0);
+  EXPECT_EQ(rhythm_of("5000 steps")->steps, 5000);
+  EXPECT_EQ(rhythm_of("1 step")->steps, 1);
+  EXPECT_EQ(rhythm_of("off")->steps, 0);
+  EXPECT_EQ(rhythm_of("off")->seconds, 0.0);
+  for (const char* wrong : {"", "10", "0 s", "-1 s", "0 steps", "1.5 steps", "10 m", "min", "1e3 s", "nan s",
+                            "99999999999999999999 steps", "10  min", "OFF", "1..5 h"}) {
+    EXPECT_FALSE(rhythm_of(wrong).has_value()) << wrong;
   }
 }
 

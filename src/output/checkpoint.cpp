@@ -1,0 +1,110 @@
+#include "output/checkpoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "output/run_state.hpp"
+#include "output/scatter.hpp"
+#include "output/whole_file.hpp"
+
+namespace packmpi::output {
+namespace {
+
+constexpr std::size_t longest_record = 12;  // doubles
+
+struct RecordRow {
+  GlobalId id;
+  std::array<double, longest_record> record;
+};
+
+using Stores = std::span<const particles::Store* const>;
+
+std::vector<RecordRow> rows_here(Stores stores) {
+  std::vector<RecordRow> rows;
+  for (const particles::Store* store : stores) {
+    for (LocalIndex i = 0; i < store->owned(); ++i) {
+      RecordRow row{store->ids()[static_cast<std::size_t>(i)], {}};
+      std::copy_n(store->record(i), store->layout().used_doubles(), row.record.begin());
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::uint64_t digest_of(const comm::Comm& comm, Stores stores) {
+  std::uint64_t mine = 0;
+  for (const particles::Store* store : stores) mine += particles::digest(*store);
+  return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(mine)));  // mod 2^64
+}
+
+/// `width` doubles of each record from `begin` on.
+h5::Column record_column(const std::string& name, const std::string& unit, const h5::Slab& slab,
+                         const std::vector<RecordRow>& rows, int begin, int width) {
+  const auto from = static_cast<std::size_t>(begin);
+  const auto wide = static_cast<std::size_t>(width);
+  auto bytes = [&rows, from, wide] {
+    std::vector<std::byte> buffer(rows.size() * wide * sizeof(double));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      std::memcpy(buffer.data() + k * wide * sizeof(double), rows[k].record.data() + from, wide * sizeof(double));
+    }
+    return buffer;
+  };
+  return {"/particles/" + name,
+          unit,
+          h5::Handle(H5Tcopy(h5::type_of<double>()), H5Tclose, "copy a type"),
+          wide,
+          slab,
+          bytes};
+}
+
+std::vector<h5::Column> plan_columns(const h5::Slab& slab, const std::vector<RecordRow>& rows,
+                                     const particles::Layout& layout) {
+  std::vector<h5::Column> plan;
+  plan.push_back(
+      h5::make_column<std::int64_t>("/particles/id", "", slab, rows, [](const RecordRow& row) { return row.id; }));
+  plan.push_back(record_column("position", "m", slab, rows, layout.position, layout.dimension));
+  plan.push_back(record_column("radius", "m", slab, rows, layout.radius, 1));
+  plan.push_back(record_column("velocity", "m/s", slab, rows, layout.velocity, layout.dimension));
+  if (layout.rotation) {
+    plan.push_back(record_column("surface_speed", "m/s", slab, rows, layout.spin, layout.spin_components()));
+  }
+  return plan;
+}
+
+void write_bytes(hid_t file, const std::string& path, const std::string& text) {
+  h5::write_small(file, path, "", std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+}  // namespace
+
+void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
+                      const RunState& state) {
+  const h5::Quiet quiet;
+  const std::uint64_t digest = digest_of(comm, stores);
+  const std::string text = to_text(state);
+  const IdBlocks blocks{state.count, comm.size()};
+  std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
+  std::sort(rows.begin(), rows.end(), [](const RecordRow& a, const RecordRow& b) { return a.id < b.id; });
+  const GlobalId begin = blocks.begin(comm.rank());
+  const h5::Slab slab{static_cast<hsize_t>(state.count), static_cast<hsize_t>(begin), rows.size()};
+  comm::agree_on(comm, [&] {
+    if (static_cast<GlobalId>(rows.size()) != blocks.begin(comm.rank() + 1) - begin) {
+      throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
+    }
+  });
+  const std::vector<h5::Column> plan = plan_columns(slab, rows, stores.front()->layout());
+  const auto frame = [&](hid_t file) {
+    h5::set_fixed_attribute(file, "format", "packmpi-checkpoint");
+    h5::set_attribute(file, "format_version", checkpoint_version);
+    h5::set_attribute(file, "particle_digest", digest);
+    h5::set_attribute(file, "text_digest", hash_of(text + state.effective_input));
+    (void)h5::create_group(file, "/particles");
+    write_bytes(file, "/state", text);
+    write_bytes(file, "/effective_input", state.effective_input);
+    for (const h5::Column& column : plan) h5::create_dataset(file, column);
+  };
+  write_whole_file(comm, path, plan, static_cast<std::int64_t>(text.size() + state.effective_input.size()), frame);
+}
+
+}  // namespace packmpi::output

@@ -1,0 +1,26 @@
+/// Where Algorithm 1 stands, beside the particles and the record.
+#pragma once
+#include <cstdint>
+
+#include "output/checkpoint.hpp"
+#include "output/record.hpp"
+
+namespace packmpi::run {
+
+/// How far a part has come: with the pile, all there is to know to go on with it.
+struct Course {
+  std::int64_t done = 0;         ///< steps
+  double phi_before = 0.0;       ///< solid fraction from which the creep is measured, once known
+  double mean_height = 0.0;      ///< [m] of the moving particles at the last look, stop = "settled" only
+  std::int64_t calm_since = -1;  ///< step of the look since which the criteria hold; -1: they do not
+  double phi_calm = 0.0;         ///< solid fraction at that look
+};
+
+/// What is being done and how far it is. With Pile and RunRecord, all that steers a run.
+struct Stand {
+  output::Phase phase = output::Phase::insertion;
+  output::LayerRow row{};  ///< of the layer that settles
+  Course course{};
+};
+
+}  // namespace packmpi::run

@@ -1,0 +1,187 @@
+#include "run/keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <limits>
+
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "observe/measure.hpp"
+#include "output/checkpoint.hpp"
+#include "output/report.hpp"
+#include "packmpi/version.hpp"
+#include "run/signals.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr std::int64_t look_every = 25;  // steps
+constexpr double layer_interval = 60.0;  // [s] no checkpoint at a layer's end is younger than that
+constexpr double stop_interval = 1.0;    // [s] between looks for the STOP file
+constexpr double slurm_reserve = 10.0;   // [s] for the end of the program
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// [s] from now to the end of the job's time, if Slurm tells.
+double slurm_seconds() {
+  const char* end = std::getenv("SLURM_JOB_END_TIME");
+  if (end == nullptr) return never;
+  const double at = std::strtod(end, nullptr);
+  return at > 0.0 ? at - static_cast<double>(std::time(nullptr)) - slurm_reserve : never;
+}
+
+const char* phase_name(output::Phase phase) {
+  constexpr std::array<const char*, 3> names{"insertion", "settling", "thaw"};
+  return names.at(static_cast<std::size_t>(phase));
+}
+
+}  // namespace
+
+Keeper::Keeper(const Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
+               const Options& options, const Origin& origin)
+    : pile_(pile),
+      stand_(stand),
+      record_(record),
+      files_(files),
+      rhythm_(input::rhythm_of(pile.scene.in.checkpoint.every).value_or(input::Rhythm{})),
+      limit_(std::min(options.max_hours > 0.0 ? options.max_hours * 3600.0 : never, slurm_seconds())),
+      last_step_(pile.steps),
+      step_limit_(options.max_steps > 0 ? pile.steps + options.max_steps : std::numeric_limits<std::int64_t>::max()),
+      serial_(origin.serial),
+      slot_(origin.next_slot) {}
+
+std::int64_t Keeper::steps_to_look() const {
+  std::int64_t steps = std::min(look_every, step_limit_ - pile_.steps);
+  if (rhythm_.steps > 0) steps = std::min(steps, last_step_ + rhythm_.steps - pile_.steps);
+  return std::max<std::int64_t>(steps, 1);
+}
+
+bool Keeper::due_by_clock(double least) const {
+  return rhythm_.seconds > 0.0 && watch_.seconds() - written_at_ >= std::min(rhythm_.seconds, least);
+}
+
+void Keeper::look() { look(due_by_clock(never) || (rhythm_.steps > 0 && pile_.steps - last_step_ >= rhythm_.steps)); }
+
+void Keeper::layer_ended() { look(due_by_clock(layer_interval) || rhythm_.steps > 0); }
+
+// One reduction: what any rank was asked for, and what rank 0 thinks is due.
+void Keeper::look(bool due) {
+  const double now = watch_.seconds();
+  longest_gap_ = std::max(longest_gap_, now - looked_at_);
+  looked_at_ = now;
+  const Wish wish = take_wish();
+  std::array<std::int64_t, 2> shared{wish == Wish::checkpoint ? 1 : 0,
+                                     static_cast<std::int64_t>(wish == Wish::stop ? Reason::signal : Reason::none)};
+  if (pile_.comm.rank() == 0) {
+    if (due) shared[0] = 1;
+    shared[1] = std::max(shared[1], static_cast<std::int64_t>(reason_to_stop()));
+  }
+  pile_.comm.max(shared);
+  if (shared[1] > 0) stop(static_cast<Reason>(shared[1]));
+  if (shared[0] == 0) return;
+  check_sound();
+  try {
+    write();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::io_failure) throw;
+    keep_going_without(error.what());
+  }
+}
+
+Keeper::Reason Keeper::reason_to_stop() {
+  if (pile_.steps >= step_limit_) return Reason::step_limit;
+  if (out_of_time()) return Reason::time_limit;
+  return stop_file_there() ? Reason::stop_file : Reason::none;
+}
+
+// Time for the checkpoint and for another look is held back, by what they took so far.
+bool Keeper::out_of_time() const { return watch_.seconds() + 2.0 * longest_write_ + 2.0 * longest_gap_ >= limit_; }
+
+bool Keeper::stop_file_there() {
+  const double now = watch_.seconds();
+  if (now - stop_seen_at_ < stop_interval) return false;
+  stop_seen_at_ = now;
+  std::error_code ignored;
+  return std::filesystem::exists(files_.stop, ignored);
+}
+
+void Keeper::check_sound() const {
+  const observe::Soundness sound = observe::soundness(pile_.comm, pile_.store, pile_.scene);
+  if (sound.non_finite == 0) return;
+  throw Error(ExitCode::numerical_failure,
+              fmt::format("{} particles have numbers that are not finite at step {}; no checkpoint is written over a "
+                          "sound one; use a smaller dynamics.time_step or softer particles",
+                          sound.non_finite, pile_.steps));
+}
+
+void Keeper::write() {
+  const Stopwatch watch;
+  const output::RunState state{.serial = serial_,
+                               .effective_input = pile_.scene.in.effective,
+                               .version = std::string(version()),
+                               .git = std::string(git_id()),
+                               .dimension = pile_.scene.box.dimension,
+                               .rotation = pile_.scene.features.rotation,
+                               .first_ids = pile_.first_ids,
+                               .count = pile_.count,
+                               .steps = pile_.steps,
+                               .particle_steps = pile_.particle_steps(),
+                               .layers = record_.layers,
+                               .creep = record_.creep,
+                               .moving_from = pile_.moving_from,
+                               .height = record_.height,
+                               .thaws = record_.thaws,
+                               .thaw_steps = pile_.thaw_steps,
+                               .height_before_thaw = record_.height_before_thaw,
+                               .phase = stand_.phase,
+                               .row = stand_.row,
+                               .done = stand_.course.done,
+                               .phi_before = stand_.course.phi_before,
+                               .mean_height = stand_.course.mean_height,
+                               .calm_since = stand_.course.calm_since,
+                               .phi_calm = stand_.course.phi_calm};
+  const std::array<const particles::Store*, 2> stores{&pile_.store, &pile_.neighborhood.frozen()};
+  output::write_checkpoint(pile_.comm, files_.slots[slot_], stores, state);
+  output::write_text(
+      pile_.comm, files_.manifest,
+      fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 1, \"newest\": \"{}\", "
+                  "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",
+                  "AB"[slot_], serial_, pile_.first_ids.size(), phase_name(stand_.phase), pile_.steps, pile_.count));
+  const double took = pile_.comm.max(watch.seconds());
+  log::debug(fmt::format("checkpoint {} at step {}: {}", files_.slots[slot_], pile_.steps, text::duration(took)));
+  ++serial_;
+  slot_ = 1 - slot_;
+  longest_write_ = std::max(longest_write_, took);
+  written_at_ = looked_at_ = watch_.seconds();
+  last_step_ = pile_.steps;
+  any_written_ = true;
+}
+
+void Keeper::keep_going_without(const std::string& words) {
+  log::warn(fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", pile_.steps, words));
+  written_at_ = looked_at_ = watch_.seconds();
+  last_step_ = pile_.steps;
+}
+
+void Keeper::stop(Reason reason) {
+  check_sound();
+  if (!any_written_ || last_step_ != pile_.steps) write();
+  constexpr std::array<const char*, 5> words{"", "a signal asked for it", "the STOP file is there",
+                                             "the time limit is near", "--max-steps are done"};
+  throw Error(
+      ExitCode::stopped_early,
+      fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", pile_.steps,
+                  pile_.first_ids.size(), files_.slots[1 - slot_], words.at(static_cast<std::size_t>(reason))));
+}
+
+void Keeper::finished() {
+  comm::agree_on(pile_.comm, [&] {
+    if (pile_.comm.rank() == 0) remove_checkpoints(files_);
+  });
+}
+
+}  // namespace packmpi::run

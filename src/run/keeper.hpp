@@ -1,0 +1,65 @@
+/// Keeps a run: writes its checkpoints when they are due, and ends it when it is told to.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "base/timer.hpp"
+#include "input/rhythm.hpp"
+#include "run/course.hpp"
+#include "run/files.hpp"
+#include "run/options.hpp"
+#include "run/pile.hpp"
+#include "run/restart.hpp"
+
+namespace packmpi::run {
+
+/// Watches the clock, signals, the STOP file and the limits of a run. Rank 0 decides; a signal may reach any rank. All
+/// it is given must outlive it.
+class Keeper {
+ public:
+  Keeper(const Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
+         const Options& options, const Origin& origin);
+
+  /// Steps to make until the next look(); the same on all ranks, at least 1.
+  [[nodiscard]] std::int64_t steps_to_look() const;
+  /// Collective. Writes a checkpoint if one is due or asked for. Throws Error(stopped_early) on all ranks after writing
+  /// one, if the run is to end; Error(numerical_failure), and writes nothing, if the state is not sound. A checkpoint
+  /// that cannot be written is an error only then; else it is a warning, and the old ones stay. Cost: one reduction.
+  void look();
+  /// Collective. The same at the end of a layer, where a checkpoint is due sooner.
+  void layer_ended();
+  /// Collective. The pack is on the disk: removes the checkpoints.
+  void finished();
+
+ private:
+  enum class Reason : std::int64_t { none, signal, stop_file, time_limit, step_limit };
+  void look(bool due);
+  [[nodiscard]] bool due_by_clock(double least) const;
+  [[nodiscard]] Reason reason_to_stop();
+  [[nodiscard]] bool out_of_time() const;
+  [[nodiscard]] bool stop_file_there();
+  void check_sound() const;
+  void write();
+  void keep_going_without(const std::string& words);
+  [[noreturn]] void stop(Reason reason);
+
+  const Pile& pile_;
+  const Stand& stand_;
+  const output::RunRecord& record_;
+  const Files& files_;
+  input::Rhythm rhythm_;
+  double limit_ = 0.0;      // [s] since the start; rank 0; infinite: none
+  std::int64_t last_step_;  // of the last checkpoint, or of the start
+  std::int64_t step_limit_;
+  std::int64_t serial_;
+  std::size_t slot_;
+  Stopwatch watch_;
+  double written_at_ = 0.0;                         // [s]
+  double looked_at_ = 0.0;                          // [s]
+  double stop_seen_at_ = 0.0;                       // [s] last look for the STOP file
+  double longest_write_ = 0.0, longest_gap_ = 0.0;  // [s]
+  bool any_written_ = false;
+};
+
+}  // namespace packmpi::run

@@ -1,0 +1,155 @@
+#include "run/restart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "base/log.hpp"
+#include "packmpi/version.hpp"
+#include "run/scene_change.hpp"
+
+namespace packmpi::run {
+namespace {
+
+/// Throws on a scene that is not the checkpoint's. Local.
+void check_scene(const output::RunState& state, const scene::Scene& scene, const std::string& path) {
+  const std::string changes = forbidden_changes(state.effective_input, scene.in.effective);
+  if (changes.empty()) return;
+  throw Error(ExitCode::bad_checkpoint,
+              fmt::format("checkpoint {} is of another scene: {}; undo the change, or begin anew with --force and "
+                          "without --restart",
+                          path, changes));
+}
+
+/// The slots whose state can be read, the newest first, as digits; why others cannot is added to `passed_over`.
+std::string readable_slots(const Files& files, const scene::Scene& scene, std::string& passed_over, bool& any) {
+  std::vector<std::pair<std::int64_t, std::size_t>> found;
+  for (std::size_t k = 0; k < files.slots.size(); ++k) {
+    if (!std::filesystem::exists(files.slots[k])) continue;
+    any = true;
+    try {
+      found.emplace_back(output::read_state(files.slots[k]).serial, k);
+    } catch (const Error& error) {
+      passed_over += fmt::format("{}{}", passed_over.empty() ? "" : "; ", error.what());
+    }
+  }
+  std::ranges::sort(found, std::greater{});
+  if (!found.empty()) {  // not passed over if it is of another scene: that is for the user to decide
+    const std::string& newest = files.slots[found.front().second];
+    check_scene(output::read_state(newest), scene, newest);
+  }
+  std::string order;
+  for (const auto& [serial, slot] : found) order += static_cast<char>('0' + slot);
+  return order;
+}
+
+/// The paths to try, in order. Empty: there is nothing at all to go on from.
+std::vector<std::string> choices(const comm::Comm& comm, const Files& files, const Options& options,
+                                 const scene::Scene& scene, std::string& passed_over) {
+  if (options.restart != "auto") {
+    comm::agree_on(comm, [&] {
+      if (comm.rank() == 0) check_scene(output::read_state(options.restart), scene, options.restart);
+    });
+    return {options.restart};
+  }
+  std::string order;
+  bool any = false;
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) order = readable_slots(files, scene, passed_over, any);
+  });
+  order = comm.broadcast(0, order);
+  passed_over = comm.broadcast(0, passed_over);
+  if (order.empty() && comm.max(std::int64_t{any ? 1 : 0}) > 0) {
+    throw Error(ExitCode::bad_checkpoint, passed_over +
+                                              "; nothing else to go on from: begin anew with --force and "
+                                              "without --restart");
+  }
+  std::vector<std::string> paths;
+  for (const char digit : order) paths.push_back(files.slots[static_cast<std::size_t>(digit - '0')]);
+  return paths;
+}
+
+/// The first of `paths` that is sound to the last particle.
+std::pair<output::RunState, std::string> read_first(const std::vector<std::string>& paths, std::string passed_over,
+                                                    Pile& pile) {
+  for (const std::string& path : paths) {
+    try {
+      output::RunState state = output::read_checkpoint(pile.comm, path, pile.store);
+      if (!passed_over.empty()) log::warn("passed over: " + passed_over);
+      return {std::move(state), path};
+    } catch (const Error& error) {  // on all ranks alike
+      passed_over += fmt::format("{}{}", passed_over.empty() ? "" : "; ", error.what());
+      pile.store = particles::Store(pile.store.layout());
+    }
+  }
+  throw Error(ExitCode::bad_checkpoint, passed_over);
+}
+
+void put_back(const output::RunState& state, Pile& pile, Stand& stand, output::RunRecord& record) {
+  pile.first_ids = state.first_ids;
+  pile.count = state.count;
+  pile.steps = state.steps;
+  pile.thaw_steps = state.thaw_steps;
+  pile.earlier_particle_steps = state.particle_steps;
+  stand = {.phase = state.phase,
+           .row = state.row,
+           .course = {.done = state.done,
+                      .phi_before = state.phi_before,
+                      .mean_height = state.mean_height,
+                      .calm_since = state.calm_since,
+                      .phi_calm = state.phi_calm}};
+  record.layers = state.layers;
+  record.creep = state.creep;
+  record.height = state.height;
+  record.thaws = state.thaws;
+  record.height_before_thaw = state.height_before_thaw;
+  pile.neighborhood.rebuild(pile.store);  // to the owners of their columns
+  pile.moving_from = state.moving_from;
+  if (state.moving_from > 0) pile.neighborhood.freeze(pile.store, state.moving_from);
+  pile.balance();
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored);
+}
+
+/// Rank-local. A number above those of all checkpoints there are.
+std::int64_t next_serial(const Files& files, std::int64_t serial) {
+  for (const std::string& slot : files.slots) {
+    try {
+      if (std::filesystem::exists(slot)) serial = std::max(serial, output::read_state(slot).serial);
+    } catch (const Error&) {
+      continue;  // damaged: it will be written over
+    }
+  }
+  return serial + 1;
+}
+
+}  // namespace
+
+Origin resume(const Files& files, const Options& options, Pile& pile, Stand& stand, output::RunRecord& record) {
+  std::string passed_over;
+  if (options.restart.empty()) return {};
+  const std::vector<std::string> paths = choices(pile.comm, files, options, pile.scene, passed_over);
+  if (paths.empty()) {
+    log::info(fmt::format("no checkpoint {}: from the beginning", files.slots[0]));
+    return {};
+  }
+  const auto [state, path] = read_first(paths, passed_over, pile);
+  if (state.version != version() || state.git != git_id()) {
+    log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
+                          state.version, state.git, version(), git_id()));
+  }
+  put_back(state, pile, stand, record);
+  log::info(fmt::format("going on from {}: layer {}, step {}, {} particles", path, state.first_ids.size(), state.steps,
+                        state.count));
+  const bool first = pile.comm.rank() == 0;
+  return {.restarted = true,
+          .serial = pile.comm.max(first ? next_serial(files, state.serial) : std::int64_t{0}),
+          .next_slot = pile.comm.max(std::int64_t{first && same_file(path, files.slots[0])}) > 0 ? 1U : 0U};
+}
+
+}  // namespace packmpi::run

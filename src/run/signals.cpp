@@ -1,0 +1,55 @@
+#include "run/signals.hpp"
+
+#include <array>
+#include <csignal>
+#include <cstddef>
+
+namespace packmpi::run {
+namespace {
+
+volatile std::sig_atomic_t checkpoint_wanted = 0;
+volatile std::sig_atomic_t stop_wanted = 0;
+volatile std::sig_atomic_t ended_before = 0;  // by TERM or INT
+
+constexpr std::array<int, 4> caught{SIGUSR1, SIGUSR2, SIGTERM, SIGINT};
+std::array<struct sigaction, caught.size()> former;
+
+extern "C" void packmpi_on_signal(int number) {
+  if (number == SIGUSR1) {
+    checkpoint_wanted = 1;
+    return;
+  }
+  stop_wanted = 1;
+  if (number == SIGUSR2) return;
+  if (ended_before != 0) {  // the second one: as if it had never been caught
+    (void)std::signal(number, SIG_DFL);
+    (void)std::raise(number);
+  }
+  ended_before = 1;
+}
+
+}  // namespace
+
+Signals::Signals() {
+  checkpoint_wanted = 0;
+  stop_wanted = 0;
+  ended_before = 0;
+  struct sigaction action {};
+  action.sa_handler = packmpi_on_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t k = 0; k < caught.size(); ++k) sigaction(caught[k], &action, &former[k]);
+}
+
+Signals::~Signals() {
+  for (std::size_t k = 0; k < caught.size(); ++k) sigaction(caught[k], &former[k], nullptr);
+}
+
+Wish take_wish() {
+  if (stop_wanted != 0) return Wish::stop;
+  if (checkpoint_wanted == 0) return Wish::none;
+  checkpoint_wanted = 0;
+  return Wish::checkpoint;
+}
+
+}  // namespace packmpi::run
