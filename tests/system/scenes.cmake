@@ -19,3 +19,9 @@ foreach(ranks 1 2)
   set_tests_properties(system/exit_codes.np${ranks} PROPERTIES PROCESSORS ${ranks} TIMEOUT 180
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS "system;np${ranks}")
 endforeach()
+if(PACKMPI_SYSTEM_PYTHON AND NOT PACKMPI_SANITIZE)   # the short version of scripts/faults.py
+  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 4
+    --build ${PROJECT_BINARY_DIR})
+  set_tests_properties(system/faults PROPERTIES PROCESSORS 2 TIMEOUT 240 SKIP_RETURN_CODE 77
+    ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS system)
+endif()
