@@ -116,7 +116,9 @@ Handle string_type(std::size_t length) {
 Handle create_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make access properties");
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110), "choose a version");
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose, "create the file"};
+  const Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make file properties");
+  check(H5Pset_obj_track_times(create.get(), false), "leave out the times");  // of the root group
+  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()), H5Fclose, "create the file"};
 }
 
 Handle create_group(hid_t file, const std::string& path) {
