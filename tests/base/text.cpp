@@ -63,22 +63,5 @@ TEST(Timer, StopwatchRuns) {
   EXPECT_GE(watch.seconds(), first + 1e-3);
 }
 
-TEST(Timer, PhasesAddUpTheirVisits) {
-  Phases phases;
-  for (int i = 0; i < 3; ++i) {
-    const auto outer = phases.visit("outer");
-    const auto inner = phases.visit("inner");
-    const Stopwatch watch;
-    while (watch.seconds() < 1e-3) {
-    }
-  }
-  ASSERT_EQ(phases.all().size(), 2U);
-  EXPECT_EQ(phases.all()[0].name, "outer");
-  EXPECT_EQ(phases.all()[0].visits, 3);
-  EXPECT_GE(phases.seconds("inner"), 3e-3);
-  EXPECT_GE(phases.seconds("outer"), phases.seconds("inner"));
-  EXPECT_EQ(phases.seconds("never"), 0.0);
-}
-
 }  // namespace
 }  // namespace packmpi

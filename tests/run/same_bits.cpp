@@ -3,6 +3,7 @@
 // near field on and off, with a moving window and without. Runs on 8 ranks and makes smaller communicators of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
