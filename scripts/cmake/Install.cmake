@@ -16,3 +16,22 @@ install(DIRECTORY include/packmpi DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 file(RELATIVE_PATH bin_to_lib ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set_target_properties(packmpi_program PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
 install(TARGETS packmpi_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+# Manual page and shell completions, as the installed program prints them.
+set(share "\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}")
+foreach(page "manual|man/man1/packmpi.1" "completion bash|bash-completion/completions/packmpi"
+        "completion zsh|zsh/site-functions/_packmpi" "completion fish|fish/vendor_completions.d/packmpi.fish")
+  string(REPLACE "|" ";" page "${page}")
+  list(GET page 0 words)
+  list(GET page 1 file)
+  separate_arguments(words)
+  install(CODE "
+    set(file \"${share}/${file}\")
+    cmake_path(GET file PARENT_PATH folder)
+    file(MAKE_DIRECTORY \"\${folder}\")
+    execute_process(COMMAND $<TARGET_FILE:packmpi_program> ${words} OUTPUT_FILE \"\${file}\" RESULT_VARIABLE failed ERROR_QUIET)
+    if(failed)
+      message(WARNING \"\${file} was not written: the program does not start here\")
+      file(REMOVE \"\${file}\")
+    endif()")
+endforeach()

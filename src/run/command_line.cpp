@@ -1,14 +1,16 @@
-// The command line, by CLI11; nothing else of the program sees that library.
+// The command line, by CLI11; nothing else of the program sees that library. Commands and options are declared here
+// once: parser, help, manual page and shell completion come from these declarations.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <sstream>
 #include <string_view>
-#include <utility>
 
 #include "base/error.hpp"
 #include "packmpi/version.hpp"
+#include "run/command_docs.hpp"
 #include "run/options.hpp"
 
 namespace packmpi::run {
@@ -16,65 +18,146 @@ namespace {
 
 constexpr const char* about =
     "packmpi: dense random packs of spheres for DEM, layer by layer, on any number of MPI ranks.\n"
-    "  packmpi [run] SCENE.toml    make the pack: NAME.hdf, NAME.json, NAME.log, NAME.steps.csv\n"
-    "  packmpi check SCENE.toml    read and check the scene, print every key as it will be used, do nothing\n"
-    "  packmpi info FILE           what a pack or a checkpoint is; verify it\n"
-    "Signals: USR1 checkpoint; USR2, TERM, INT checkpoint and end. A file STOP in the output folder ends it, too.\n"
-    "Exit codes: 0 done; 2 bad input or usage; 3 finished but a target was missed; 4 numerical failure; 5 "
-    "input/output; "
-    "6 checkpoint unusable; 75 stopped early with a checkpoint: --restart auto goes on.";
+    "\"packmpi SCENE.toml\" is \"packmpi run SCENE.toml\"; \"packmpi COMMAND --help\" tells a command's options.";
 
 std::string version_text() { return fmt::format("packmpi {} ({}, {})\n", version(), git_id(), compiler()); }
 
-// A command may stand before the scene; "run" is understood otherwise.
-Command take_command(std::vector<std::string>& words) {
-  constexpr std::array<std::pair<std::string_view, Command>, 3> commands{
-      {{"run", Command::run}, {"check", Command::check}, {"info", Command::info}}};
-  for (const auto& [name, command] : commands) {
-    if (words.empty() || words.front() != name) continue;
-    words.erase(words.begin());
-    return command;
-  }
-  return Command::run;
+void declare_scene(CLI::App& app, Options& options) {
+  app.add_option("SCENE", options.scene, "scene file (doc/input.md)")->required();
+  app.add_option("--set", options.overrides.set, "change a key; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY.PATH=VALUE");
+  // Declared after --set, so it is added behind its values, and wins.
+  app.add_option_function<std::uint64_t>(
+         "--seed", [&options](std::uint64_t seed) { options.overrides.set.push_back(fmt::format("seed={}", seed)); },
+         "the same as --set seed=N")
+      ->type_name("N");
 }
 
-}  // namespace
-
-std::variant<Options, Reply> parse_command_line(int argc, const char* const* argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  Options options;
-  options.command = take_command(words);
-  CLI::App app{about, "packmpi"};
-  bool quiet = false;
-  bool verbose = false;
-  bool show_version = false;
-  std::optional<std::uint64_t> seed;
-  app.add_option("SCENE", options.scene, "scene file (doc/input.md)");
-  app.add_option("-o,--output", options.folder, "folder for the outputs; made if missing")->capture_default_str();
-  app.add_option("--set", options.overrides.set, "change a key: key.path=value; may be repeated")
-      ->allow_extra_args(false);
-  app.add_option("--seed", seed, "the same as --set seed=N");
+void declare_run(CLI::App& app, Options& options) {
+  declare_scene(app, options);
+  app.add_option("-o,--output", options.folder, "folder for the outputs; made if missing")
+      ->capture_default_str()
+      ->type_name("FOLDER");
   app.add_flag("--force", options.force, "replace outputs that exist");
   app.add_option("--restart", options.restart, "go on from a checkpoint: auto (the newest sound one) or its file")
       ->type_name("auto|FILE");
   app.add_option("--max-hours", options.max_hours, "write a checkpoint and end (code 75) before so much wall time")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--max-steps", options.max_steps, "the same after so many time steps")->check(CLI::PositiveNumber);
-  app.add_flag("-q,--quiet", quiet, "say only warnings, errors and the result");
-  app.add_flag("-v,--verbose", verbose, "say more");
-  app.add_flag("--version", show_version, "print version, git id and compiler");
+      ->check(CLI::PositiveNumber)
+      ->type_name("H");
+  app.add_option("--max-steps", options.max_steps, "the same after so many time steps")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_flag_callback(
+      "-q,--quiet", [&options] { options.verbosity = log::Verbosity::quiet; },
+      "say only warnings, errors and the result");
+  app.add_flag_callback(
+      "-v,--verbose", [&options] { options.verbosity = log::Verbosity::verbose; }, "say more");
+}
+
+void declare_info(CLI::App& app, Options& options) {
+  app.add_option("FILE", options.scene, "pack or checkpoint")->required();
+}
+
+void declare_nothing(CLI::App&, Options&) {}
+
+void declare_completion(CLI::App& app, Options& options) {
+  app.add_option("SHELL", options.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+}
+
+struct Declaration {
+  Command command;
+  const char* name;
+  const char* text;
+  void (*declare)(CLI::App&, Options&);
+};
+constexpr std::array declarations{
+    Declaration{Command::run, "run", "make the pack: NAME.hdf, NAME.json, NAME.log, NAME.steps.csv", declare_run},
+    Declaration{Command::check, "check", "read and check the scene, print every key as it will be used, do nothing",
+                declare_scene},
+    Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
+    Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
+    Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
+                declare_completion}};
+
+std::string end_words() {
+  std::string text;
+  const auto add = [&](const char* title, const std::vector<EndWords>& lines) {
+    text += fmt::format("{}\n", title);
+    for (const EndWords& line : lines) text += fmt::format("  {:<28}{}\n", line.term, line.text);
+  };
+  add("Signals:", signal_words());
+  add("Exit codes:", exit_code_words());
+  return text;
+}
+
+void declare_all(CLI::App& app, Options& options) {
+  app.set_version_flag("--version", version_text(), "print version, git id and compiler");
+  app.require_subcommand(1);
+  app.footer(end_words());
+  for (const Declaration& d : declarations) {
+    CLI::App* command = app.add_subcommand(d.name, d.text);
+    d.declare(*command, options);
+    command->callback([&options, &d] { options.command = d.command; });
+  }
+}
+
+// "run" is understood where no command stands.
+void name_command(std::vector<std::string>& words) {
+  constexpr std::array<std::string_view, 3> answers{"-h", "--help", "--version"};
+  const auto known = [&](const Declaration& d) { return words.front() == d.name; };
+  if (words.empty() || std::ranges::any_of(declarations, known)) return;
+  if (std::ranges::find(answers, words.front()) == answers.end()) words.insert(words.begin(), "run");
+}
+
+OptionWords words_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();  // "N:POSITIVE" with its check
+  OptionWords words{
+      .names = {}, .value = type.substr(0, type.find(':')), .choices = {}, .text = option.get_description()};
+  if (option.get_positional()) return {{option.get_name()}, "", {}, words.text};
+  for (const std::string& name : option.get_snames()) words.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) words.names.push_back("--" + name);
+  if (option.get_items_expected_max() == 0) words.value.clear();  // a flag
+  return words;
+}
+
+}  // namespace
+
+std::vector<CommandWords> command_words() {
+  Options options;
+  CLI::App app{about, "packmpi"};
+  declare_all(app, options);
+  std::vector<CommandWords> all;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    CommandWords words{command->get_name(), command->get_description(), {}, {}};
+    for (const CLI::Option* option : command->get_options()) {
+      if (option == command->get_help_ptr()) continue;
+      (option->get_positional() ? words.arguments : words.options).push_back(words_of(*option));
+    }
+    if (words.name == "completion") words.arguments.front().choices = {"bash", "zsh", "fish"};
+    all.push_back(words);
+  }
+  return all;
+}
+
+std::variant<Options, Reply> parse_command_line(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  name_command(words);
+  Options options;
+  CLI::App app{about, "packmpi"};
+  declare_all(app, options);
   try {
     std::vector<std::string> reversed(words.rbegin(), words.rend());  // CLI11 takes them from the back
     app.parse(reversed);
-    if (show_version) return Reply{version_text(), 0};
-    if (options.scene.empty()) throw CLI::RequiredError("SCENE.toml");
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, err;
     const int code = app.exit(error, out, err);
     return Reply{out.str() + err.str(), code == 0 ? 0 : static_cast<int>(ExitCode::bad_input)};
   }
-  if (seed) options.overrides.set.push_back(fmt::format("seed={}", *seed));
-  options.verbosity = quiet ? log::Verbosity::quiet : verbose ? log::Verbosity::verbose : log::Verbosity::normal;
+  if (options.command == Command::manual) return Reply{manual_page(), 0};
+  if (options.command == Command::completion) return Reply{completion(options.shell), 0};
   return options;
 }
 

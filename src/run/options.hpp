@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "base/log.hpp"
 #include "input/read.hpp"
 
 namespace packmpi::run {
 
-enum class Command { run, check, info };
+enum class Command { run, check, info, manual, completion };
 
 /// What the user asked on the command line.
 struct Options {
@@ -23,9 +24,10 @@ struct Options {
   double max_hours = 0.0;      ///< [h] of wall time, then a checkpoint and the end; 0: no limit
   std::int64_t max_steps = 0;  ///< of this run, then the same; 0: no limit
   log::Verbosity verbosity = log::Verbosity::normal;
+  std::string shell;  ///< completion: "bash", "zsh" or "fish"
 };
 
-/// Text to print and the exit code, for --help, --version and usage errors.
+/// Text to print and the exit code, for --help, --version, usage errors, manual and completion.
 struct Reply {
   std::string text;
   int code = 0;
@@ -33,5 +35,31 @@ struct Reply {
 
 /// Local and pure: every rank sees the same argv and gets the same answer.
 [[nodiscard]] std::variant<Options, Reply> parse_command_line(int argc, const char* const* argv);
+
+/// One option or positional argument, as documented.
+struct OptionWords {
+  std::vector<std::string> names;    ///< "-o", "--output"; of an argument its name alone, "SCENE"
+  std::string value;                 ///< what follows it, "FOLDER"; "" for a flag
+  std::vector<std::string> choices;  ///< the words it takes, if they are few
+  std::string text;
+};
+
+/// One command of the program, as documented.
+struct CommandWords {
+  std::string name;
+  std::string text;
+  std::vector<OptionWords> arguments;  ///< positional
+  std::vector<OptionWords> options;    ///< without --help
+};
+
+/// All commands with all their options, from the declarations that the parser uses. Local.
+[[nodiscard]] std::vector<CommandWords> command_words();
+
+/// What ends every help text and the manual: signals and exit codes, a line each.
+struct EndWords {
+  std::string term, text;
+};
+[[nodiscard]] const std::vector<EndWords>& exit_code_words();
+[[nodiscard]] const std::vector<EndWords>& signal_words();
 
 }  // namespace packmpi::run

@@ -1,6 +1,9 @@
 // The command line as a struct: every option, every refusal.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+
 #include "run/options.hpp"
 
 namespace packmpi::run {
@@ -35,7 +38,11 @@ TEST(CommandLine, CommandsAndOptions) {
 TEST(CommandLine, HelpAndVersionAreAnswersNotErrors) {
   const auto help = std::get<Reply>(parse({"--help"}));
   EXPECT_EQ(help.code, 0);
-  EXPECT_NE(help.text.find("packmpi check SCENE.toml"), std::string::npos);
+  for (const char* words : {"check", "info", "USR2", "75"})
+    EXPECT_NE(help.text.find(words), std::string::npos) << words;
+  const auto run_help = std::get<Reply>(parse({"a.toml", "--help"}));
+  EXPECT_EQ(run_help.code, 0);
+  EXPECT_NE(run_help.text.find("--max-hours"), std::string::npos);
   const auto version = std::get<Reply>(parse({"--version"}));
   EXPECT_EQ(version.code, 0);
   EXPECT_EQ(version.text.rfind("packmpi ", 0), 0U);
@@ -52,6 +59,50 @@ TEST(CommandLine, MisuseIsExitCodeTwo) {
     EXPECT_EQ(reply.code, 2);
     EXPECT_FALSE(reply.text.empty());
   }
+}
+
+std::string answer(const std::vector<const char*>& words) { return std::get<Reply>(parse(words)).text; }
+
+TEST(CommandLine, ManualAndCompletionsNameEveryOption) {
+  std::string manual = answer({"manual"});
+  std::erase(manual, '\\');
+  const std::vector<std::string> shells{answer({"completion", "bash"}), answer({"completion", "zsh"}),
+                                        answer({"completion", "fish"})};
+  int options = 0;
+  for (const CommandWords& command : command_words()) {
+    EXPECT_NE(manual.find("packmpi " + command.name), std::string::npos) << command.name;
+    for (const std::string& shell : shells) EXPECT_NE(shell.find(command.name), std::string::npos) << command.name;
+    for (const OptionWords& option : command.options) {
+      const std::string& name = option.names.back();
+      EXPECT_NE(manual.find(name), std::string::npos) << name;
+      EXPECT_NE(shells[0].find(name), std::string::npos) << name;
+      EXPECT_NE(shells[1].find(name), std::string::npos) << name;
+      EXPECT_NE(shells[2].find("-l " + name.substr(2)), std::string::npos) << name;
+      ++options;
+    }
+  }
+  EXPECT_GE(options, 11);
+  for (const EndWords& code : exit_code_words()) EXPECT_NE(manual.find(code.text.substr(0, 12)), std::string::npos);
+}
+
+/// What bash offers after these words.
+std::string bash_offers(const std::string& words, int at) {
+  const std::string script = answer({"completion", "bash"}) + "COMP_WORDS=(" + words +
+                             "); COMP_CWORD=" + std::to_string(at) + "; _packmpi; echo \"${COMPREPLY[*]}\"\n";
+  const std::string path = testing::TempDir() + "packmpi_completion.bash";
+  std::ofstream(path) << script;
+  FILE* pipe = popen(("bash " + path).c_str(), "r");
+  std::string out;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += static_cast<char>(c);
+  EXPECT_EQ(pclose(pipe), 0);
+  return out;
+}
+
+TEST(CommandLine, BashCompletes) {
+  EXPECT_EQ(bash_offers("packmpi com", 1), "completion\n");
+  EXPECT_EQ(bash_offers("packmpi completion f", 2), "fish\n");
+  EXPECT_EQ(bash_offers("packmpi a.toml --max", 2), "--max-hours --max-steps\n");
+  EXPECT_EQ(bash_offers("packmpi check a.toml --", 3), "--help --set --seed\n");
 }
 
 }  // namespace

@@ -33,3 +33,11 @@ run(${FOLDER}/moved/bin/packmpi --version)
 if(NOT text MATCHES "${VERSION}")
   message(FATAL_ERROR "packmpi --version said: ${text}")
 endif()
+
+foreach(page man/man1/packmpi.1 bash-completion/completions/packmpi zsh/site-functions/_packmpi
+        fish/vendor_completions.d/packmpi.fish)
+  file(READ ${FOLDER}/moved/share/${page} text)
+  if(NOT text MATCHES "max.*hours")
+    message(FATAL_ERROR "${page} does not name the options")
+  endif()
+endforeach()
