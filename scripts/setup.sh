@@ -12,7 +12,7 @@ packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpet
   libspdlog-dev librandom123-dev nlohmann-json3-dev)
 for option in "$@"; do
   case $option in
-    --plots) packages+=(python3 python3-h5py python3-matplotlib) ;;
+    --plots) packages+=(python3 python3-h5py python3-matplotlib python3-jsonschema) ;;
     --peers) packages+=(python3 lammps) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;

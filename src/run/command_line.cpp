@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "output/scene_schema.hpp"
 #include "packmpi/version.hpp"
 #include "run/command_docs.hpp"
 #include "run/options.hpp"
@@ -59,6 +60,15 @@ void declare_info(CLI::App& app, Options& options) {
   app.add_option("FILE", options.scene, "pack or checkpoint")->required();
 }
 
+void declare_init(CLI::App& app, Options& options) {
+  app.add_option("FILE", options.scene, "scene file to write")->default_val("scene.toml");
+  app.add_option("--dimension", options.dimension, "2: discs, 3: spheres")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str()
+      ->type_name("2|3");
+  app.add_flag("--force", options.force, "replace the file if it exists");
+}
+
 void declare_nothing(CLI::App&, Options&) {}
 
 void declare_completion(CLI::App& app, Options& options) {
@@ -78,6 +88,8 @@ constexpr std::array declarations{
     Declaration{Command::check, "check", "read and check the scene, print every key as it will be used, do nothing",
                 declare_scene},
     Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
+    Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
+    Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},
     Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
     Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
                 declare_completion}};
@@ -156,6 +168,7 @@ std::variant<Options, Reply> parse_command_line(int argc, const char* const* arg
     const int code = app.exit(error, out, err);
     return Reply{out.str() + err.str(), code == 0 ? 0 : static_cast<int>(ExitCode::bad_input)};
   }
+  if (options.command == Command::schema) return Reply{output::scene_schema(), 0};
   if (options.command == Command::manual) return Reply{manual_page(), 0};
   if (options.command == Command::completion) return Reply{completion(options.shell), 0};
   return options;

@@ -11,12 +11,12 @@
 
 namespace packmpi::run {
 
-enum class Command { run, check, info, manual, completion };
+enum class Command { run, check, info, init, schema, manual, completion };
 
 /// What the user asked on the command line.
 struct Options {
   Command command = Command::run;
-  std::string scene;           ///< path of the TOML file; of any file for info
+  std::string scene;           ///< path of the TOML file; of any file for info, of the new one for init
   std::string folder = ".";    ///< where outputs go
   input::Overrides overrides;  ///< --set, --seed
   bool force = false;          ///< existing outputs may be replaced
@@ -24,10 +24,11 @@ struct Options {
   double max_hours = 0.0;      ///< [h] of wall time, then a checkpoint and the end; 0: no limit
   std::int64_t max_steps = 0;  ///< of this run, then the same; 0: no limit
   log::Verbosity verbosity = log::Verbosity::normal;
+  int dimension = 3;  ///< of the scene that init writes
   std::string shell;  ///< completion: "bash", "zsh" or "fish"
 };
 
-/// Text to print and the exit code, for --help, --version, usage errors, manual and completion.
+/// Text to print and the exit code, for --help, --version, usage errors, schema, manual and completion.
 struct Reply {
   std::string text;
   int code = 0;

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "comm/session.hpp"
+#include "input/starter.hpp"
 #include "output/report.hpp"
 #include "run/files.hpp"
 #include "run/info.hpp"
@@ -54,6 +56,18 @@ int make(const comm::Comm& comm, const scene::Scene& scene, const Options& optio
   return static_cast<int>(met ? ExitCode::done : ExitCode::target_missed);
 }
 
+// `packmpi init`: a scene to begin with.
+int begin_scene(const comm::Comm& comm, const Options& options) {
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0 && !options.force && std::filesystem::exists(options.scene)) {
+      throw Error(ExitCode::bad_input, options.scene + " exists; use --force to replace it");
+    }
+  });
+  output::write_text(comm, options.scene, input::starter(options.dimension));
+  log::info(fmt::format("{} written; edit it, then: packmpi check {}", options.scene, options.scene));
+  return 0;
+}
+
 int act(const comm::Comm& comm, const Options& options) {
   log::start(comm.rank(), std::nullopt, options.verbosity);
   if (options.command == Command::info) {
@@ -61,6 +75,7 @@ int act(const comm::Comm& comm, const Options& options) {
     if (comm.rank() == 0) fmt::print("{}", words);
     return 0;
   }
+  if (options.command == Command::init) return begin_scene(comm, options);
   const input::Input in = input::read(comm, options.scene, options.overrides);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same

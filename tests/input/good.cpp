@@ -2,12 +2,15 @@
 // point.
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "input/keys.hpp"
 #include "input/read.hpp"
 #include "input/rhythm.hpp"
+#include "input/starter.hpp"
 #include "input/units.hpp"
 
 namespace packmpi::input {
@@ -261,6 +264,30 @@ TEST(KeyTable, IsConsistent) {
     EXPECT_EQ(find_key(key.path), &key) << "declared twice: " << key.path;
     EXPECT_TRUE(key.doc.ends_with('.')) << key.path;
     for (const std::string_view word : choices(key)) EXPECT_NE(wanted(key).find(word), std::string::npos) << key.path;
+  }
+}
+
+/// Lines "# key = value" of the starter without their marks.
+std::string all_in(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const bool key = std::regex_match(line, std::regex(R"(# [a-z_0-9]+ = .*)"));
+    out += key && line.find("# only if") == std::string::npos ? line.substr(2) + "\n" : line + "\n";
+  }
+  return out;
+}
+
+TEST(Starter, IsAScene) {
+  for (const int dimension : {2, 3}) {
+    const std::string text = starter(dimension);
+    const Input in = parse(text, "scene.toml", {});
+    EXPECT_EQ(in.container.dimension, dimension);
+    EXPECT_EQ(parse(all_in(text), "scene.toml", {}).effective, in.effective) << "what is commented out is the default";
+    for (const Key& key : keys()) {
+      const std::string name(key.path.substr(key.path.rfind('.') + 1));
+      EXPECT_NE(text.find(name + " = "), std::string::npos) << key.path;
+    }
   }
 }
 

@@ -1,0 +1,82 @@
+#include "input/starter.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+
+#include "input/keys.hpp"
+#include "input/read.hpp"
+#include "input/values.hpp"
+
+namespace packmpi::input {
+namespace {
+
+constexpr std::size_t width = 100;  // columns of a comment
+
+// What has no default must come from somewhere: the material and the layers of the paper's examples, in a small box.
+std::string example(int dimension) {
+  return fmt::format(
+      "container.dimension = {}\ncontainer.size = {}\n"
+      "particles.density = 1000.0\nparticles.youngs_modulus = 1.0e8\nparticles.poisson_ratio = 0.25\n"
+      "particles.radius.distribution = \"equal\"\nparticles.radius.value = {}\n"
+      "layers.thickness = 0.1\nlayers.fraction = {}\njamming.gravity = 2.0\n",
+      dimension, dimension == 3 ? "[0.4, 0.4, 0.3]" : "[0.6, 0.3]", dimension == 3 ? "0.02" : "0.01",
+      dimension == 3 ? "0.25" : "0.4");
+}
+
+std::string comment(std::string_view text) {
+  std::string out, line = "#";
+  while (!text.empty()) {
+    const std::size_t space = text.find(' ');
+    const std::string_view word = text.substr(0, space);
+    if (line.size() > 1 && line.size() + 1 + word.size() > width) {
+      out += line + "\n";
+      line.resize(1);
+    }
+    line += fmt::format(" {}", word);
+    text.remove_prefix(space == std::string_view::npos ? text.size() : space + 1);
+  }
+  return out + line + "\n";
+}
+
+// The last name of a path, and what is before it.
+std::array<std::string_view, 2> split(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return {dot == std::string_view::npos ? "" : path.substr(0, dot), path.substr(dot + 1)};
+}
+
+bool at_default(const Key& key, Input& in) {
+  if (!key.standard) return false;
+  Input other = in;
+  store_default(key, other);
+  return written(key, other) == written(key, in);
+}
+
+std::string lines(const Key& key, Input& in) {
+  const std::string_view name = split(key.path)[1];
+  std::string text = comment(fmt::format("{} ({})", key.doc, wanted(key)));
+  if (!key.applies(in)) return text + fmt::format("# {} = ...   # only if {}\n", name, key.when.words);
+  return text + fmt::format("{}{} = {}\n", at_default(key, in) ? "# " : "", name, written(key, in));
+}
+
+}  // namespace
+
+std::string starter(int dimension) {
+  Input in = parse(example(dimension), "example", {});
+  std::string text =
+      "# A scene of packmpi. Numbers are in SI units, or text with a unit: \"20 mm\". Keys that are commented out\n"
+      "# have the value shown. Check it with: packmpi check FILE; run it with: mpirun -n 4 packmpi FILE\n\n";
+  std::string_view open;
+  for (const Key& key : keys()) {
+    const std::string_view table = split(key.path)[0];
+    if (table != open) {  // a table that is there only if it is named stays away
+      const bool absent = !in.near_field && table == "near_field";
+      text += fmt::format("\n{}[{}]\n", absent ? "# " : "", table);
+    }
+    open = table;
+    text += lines(key, in);
+  }
+  return text;
+}
+
+}  // namespace packmpi::input
