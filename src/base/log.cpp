@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "base/error.hpp"
@@ -26,42 +27,84 @@ spdlog::sink_ptr terminal(Rank rank, Verbosity verbosity) {
   return sink;
 }
 
-spdlog::sink_ptr file_sink(const std::string& file) {
+// Words as they are, or the members of a JSON object made by line().
+constexpr const char* text_pattern = "%Y-%m-%d %H:%M:%S.%e %l %v";
+constexpr const char* jsonl_pattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l",%v})";
+
+spdlog::sink_ptr file_sink(const std::string& file, Format format) {
   try {
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file);
-    sink->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
+    sink->set_pattern(format == Format::jsonl ? jsonl_pattern : text_pattern);
     return sink;
   } catch (const spdlog::spdlog_ex& failure) {
     throw Error(ExitCode::io_failure, "cannot write the log file: " + std::string(failure.what()));
   }
 }
 
-Logger make(Rank rank, const std::optional<std::string>& file, Verbosity verbosity) {
-  std::vector<spdlog::sink_ptr> sinks{terminal(rank, verbosity)};
-  if (rank == 0 && file) sinks.push_back(file_sink(*file));
-  auto logger = std::make_shared<spdlog::logger>("packmpi", sinks.begin(), sinks.end());
+Logger make(const spdlog::sink_ptr& sink) {
+  auto logger = std::make_shared<spdlog::logger>("packmpi", sink);
   logger->set_level(spdlog::level::debug);
   logger->flush_on(spdlog::level::info);
   return logger;
 }
 
-Logger& current() {
-  static Logger logger = make(0, std::nullopt, Verbosity::quiet);
-  return logger;
+struct Outlets {
+  Logger terminal;
+  Logger file;  // may be none
+  Format format = Format::text;
+};
+
+Outlets& current() {
+  static Outlets outlets{make(terminal(0, Verbosity::quiet)), nullptr, Format::text};
+  return outlets;
+}
+
+using Fields = std::initializer_list<Field>;
+
+// The members of the line's object, without its braces.
+std::string members(std::string_view event, std::string_view text, Fields fields) {
+  nlohmann::ordered_json line{{"event", event}};
+  if (!text.empty()) line["text"] = text;
+  for (const Field& field : fields) {
+    std::visit([&](const auto& value) { line[std::string(field.name)] = value; }, field.value);
+  }
+  const std::string whole = line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return whole.substr(1, whole.size() - 2);
+}
+
+// The text is an argument, never a format: braces in a file name are harmless.
+void say(spdlog::level::level_enum level, std::string_view text, std::string_view event = "message",
+         Fields fields = {}) {
+  const Outlets& out = current();
+  out.terminal->log(level, "{}", text);
+  if (!out.file) return;
+  if (out.format == Format::jsonl) {
+    out.file->log(level, "{}", members(event, text, fields));
+  } else {
+    out.file->log(level, "{}", text);
+  }
 }
 
 }  // namespace
 
-void start(Rank rank, const std::optional<std::string>& file, Verbosity verbosity) {
-  current() = make(rank, file, verbosity);
+void start(Rank rank, const std::optional<std::string>& file, Verbosity verbosity, Format format) {
+  current() = {make(terminal(rank, verbosity)), rank == 0 && file ? make(file_sink(*file, format)) : nullptr, format};
 }
 
-void finish() { current() = make(0, std::nullopt, Verbosity::quiet); }
+void finish() { current() = {make(terminal(0, Verbosity::quiet)), nullptr, Format::text}; }
 
-// The text is an argument, never a format: braces in a file name are harmless.
-void debug(std::string_view text) { current()->debug("{}", text); }
-void info(std::string_view text) { current()->info("{}", text); }
-void warn(std::string_view text) { current()->warn("{}", text); }
-void error(std::string_view text) { current()->error("{}", text); }
+void debug(std::string_view text) { say(spdlog::level::debug, text); }
+void info(std::string_view text) { say(spdlog::level::info, text); }
+void warn(std::string_view text) { say(spdlog::level::warn, text); }
+void error(std::string_view text) { say(spdlog::level::err, text); }
+
+void event(std::string_view event, std::string_view text, Fields fields) {
+  say(spdlog::level::info, text, event, fields);
+}
+
+void event_for_programs(std::string_view event, Fields fields) {
+  const Outlets& out = current();
+  if (out.file && out.format == Format::jsonl) out.file->info("{}", members(event, "", fields));
+}
 
 }  // namespace packmpi::log

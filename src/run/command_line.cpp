@@ -49,6 +49,14 @@ void declare_run(CLI::App& app, Options& options) {
   app.add_option("--max-steps", options.max_steps, "the same after so many time steps")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  app.add_option_function<std::string>(
+         "--log-format",
+         [&options](const std::string& word) {
+           options.log_format = word == "jsonl" ? log::Format::jsonl : log::Format::text;
+         },
+         "of NAME.log: text, or jsonl, one JSON object a line with the numbers as members")
+      ->check(CLI::IsMember({"text", "jsonl"}))
+      ->type_name("text|jsonl");
   app.add_flag_callback(
       "-q,--quiet", [&options] { options.verbosity = log::Verbosity::quiet; },
       "say only warnings, errors and the result");

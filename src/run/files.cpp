@@ -80,7 +80,7 @@ Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Optio
       if (options.restart.empty()) remove_if_there(files.log);  // --force: a new log, not a longer one
       if (options.restart.empty()) remove_checkpoints(files);
     }
-    log::start(comm.rank(), files.log, options.verbosity);
+    log::start(comm.rank(), files.log, options.verbosity, options.log_format);
   });
   return files;
 }

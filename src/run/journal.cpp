@@ -34,6 +34,11 @@ Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet, bo
 void Journal::layer_inserted(const output::LayerRow& row) {
   log::debug(fmt::format("inserted {} particles in {} darts, solid fraction {:.4f} of the region from {:.6g} m up",
                          row.inserted, row.attempts, row.fraction_got, row.region_bottom));
+  log::event_for_programs("layer_inserted", {{"layer", std::int64_t{layers_done_} + 1},
+                                             {"inserted", row.inserted},
+                                             {"darts", row.attempts},
+                                             {"fraction", row.fraction_got},
+                                             {"bottom", row.region_bottom}});
 }
 
 void Journal::moment(double share) {
@@ -85,11 +90,22 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   last_shown_ = now;
   const double steps =
       static_cast<double>(pile_.stepper.particle_steps()) * pile_.comm.size();  // about: all ranks alike
+  const double left = seconds_left(share);
+  log::event_for_programs("progress", {{"phase", std::string(thawing_ ? "thaw" : "layer")},
+                                       {"layer", std::ssize(pile_.first_ids)},
+                                       {"share", share},
+                                       {"time", pile_.time()},
+                                       {"particles", pile_.count},
+                                       {"moving", pile_.count - pile_.moving_from},
+                                       {"top", top},
+                                       {"kinetic_energy", kinetic_energy},
+                                       {"particle_steps_per_second", steps / now},
+                                       {"seconds_left", left}});
   // Under 80 columns: a longer line would wrap, and a wrapped line cannot be rewritten.
   const std::string line =
       fmt::format("{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {} left",
                   thawing_ ? "thaw" : "layer", pile_.first_ids.size(), 100.0 * share, pile_.count - pile_.moving_from,
-                  top, kinetic_energy, steps / now * 1e-6, text::duration(seconds_left(share)));
+                  top, kinetic_energy, steps / now * 1e-6, text::duration(left));
   if (terminal_) {
     fmt::print("\r{}\033[K", line);
   } else {
@@ -107,23 +123,35 @@ void Journal::layer_settled(const output::LayerRow& row) {
       "at most {:.1e} r",
       layers_done_, row.duration, row.stop_reason, row.total, row.height, row.top, row.kinetic_per_mgd,
       row.coordination, row.max_overlap);
-  tell(line);
+  tell("layer_settled", line,
+       {{"layer", std::int64_t{layers_done_}},
+        {"time", pile_.time()},
+        {"duration", row.duration},
+        {"stop_reason", row.stop_reason},
+        {"particles", row.total},
+        {"height", row.height},
+        {"top", row.top},
+        {"kinetic_per_mgd", row.kinetic_per_mgd},
+        {"coordination", row.coordination},
+        {"max_overlap", row.max_overlap}});
 }
 
 void Journal::thaw_started() { thawing_ = true; }
 
 void Journal::thawed(double height) {
-  tell(fmt::format("thaw: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", pile_.count,
-                   pile_.scene.thaw, height_, height));
+  tell("thawed",
+       fmt::format("thaw: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", pile_.count,
+                   pile_.scene.thaw, height_, height),
+       {{"particles", pile_.count}, {"duration", pile_.scene.thaw}, {"height_before", height_}, {"height", height}});
   height_ = height;
   thawing_ = false;
 }
 
 // On a terminal the progress line gives way.
-void Journal::tell(const std::string& line) const {
+void Journal::tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const {
   if (pile_.comm.rank() == 0 && terminal_ && !quiet_) fmt::print("\r\033[K");
   std::fflush(stdout);
-  log::info(line);
+  log::event(event, line, fields);
 }
 
 void Journal::finish() { steps_.close(); }

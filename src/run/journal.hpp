@@ -1,9 +1,11 @@
 /// What a run tells while it goes: progress, NAME.log, NAME.steps.csv.
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "base/log.hpp"
 #include "base/timer.hpp"
 #include "output/record.hpp"
 #include "output/report.hpp"
@@ -32,7 +34,7 @@ class Journal {
  private:
   void progress(double share, double kinetic_energy, double top);
   [[nodiscard]] double seconds_left(double share) const;
-  void tell(const std::string& line) const;
+  void tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const;
 
   const Pile& pile_;
   output::StepLog steps_;

@@ -24,6 +24,7 @@ struct Options {
   double max_hours = 0.0;      ///< [h] of wall time, then a checkpoint and the end; 0: no limit
   std::int64_t max_steps = 0;  ///< of this run, then the same; 0: no limit
   log::Verbosity verbosity = log::Verbosity::normal;
+  log::Format log_format = log::Format::text;
   int dimension = 3;  ///< of the scene that init writes
   std::string shell;  ///< completion: "bash", "zsh" or "fish"
 };

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 
@@ -55,6 +58,32 @@ TEST(Log, FileGetsEverythingAndIsAppendedTo) {
   const std::string words = text.str();
   EXPECT_TRUE(has(words, "debug d-line") && has(words, "info i-line") && has(words, "warning w-line"));
   EXPECT_NE(words.find("d-line"), words.rfind("d-line"));
+  std::remove(name.c_str());
+}
+
+TEST(Log, JsonLinesHoldTheFields) {
+  const std::string name = ::testing::TempDir() + "packmpi_log_test_" + std::to_string(getpid()) + ".jsonl";
+  std::remove(name.c_str());
+  ::testing::internal::CaptureStderr();
+  start(0, name, Verbosity::normal, Format::jsonl);
+  warn("a \"quoted\" \\ word\n\xff");
+  event("settled", "words", {{"layer", std::int64_t{3}}, {"height", 0.1}, {"why", std::string("duration")}});
+  event_for_programs("progress", {{"share", std::nan("")}});
+  finish();
+  const std::string words = ::testing::internal::GetCapturedStderr();
+  EXPECT_TRUE(has(words, "words") && !has(words, "progress"));
+  std::ifstream file(name);
+  std::vector<nlohmann::json> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0]["level"], "warning");
+  EXPECT_EQ(lines[0]["event"], "message");
+  EXPECT_TRUE(has(lines[0]["text"], "a \"quoted\" \\ word\n"));
+  EXPECT_EQ(lines[1]["event"], "settled");
+  EXPECT_EQ(lines[1]["layer"], 3);
+  EXPECT_EQ(lines[1]["height"], 0.1);
+  EXPECT_EQ(lines[1]["why"], "duration");
+  EXPECT_TRUE(lines[2]["share"].is_null());
   std::remove(name.c_str());
 }
 

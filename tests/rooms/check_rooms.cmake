@@ -13,7 +13,7 @@ set(libraries
   "CLI/.*=run"
   "Random123/.*=base"
   "Eigen/.*|unsupported/Eigen/.*=geometry"
-  "nlohmann/.*=output run")
+  "nlohmann/.*=base output run")
 
 function(report where text)
   set_property(GLOBAL APPEND PROPERTY found "${where}: ${text}")
