@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
-# usage: scripts/setup.sh [--plots] [--render] [--checks] [--peers]
+# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
 #   --peers   also LAMMPS, to compare with
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
+#   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/check.sh
 set -euo pipefail
 
@@ -15,8 +16,9 @@ for option in "$@"; do
     --plots) packages+=(python3 python3-h5py python3-matplotlib python3-jsonschema) ;;
     --peers) packages+=(python3 lammps) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
+    --site) packages+=(mkdocs mkdocs-material) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;
-    *) sed -n '2,7s/^# //p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,8s/^# //p' "$0" >&2; exit 2 ;;
   esac
 done
 

@@ -3,6 +3,6 @@
 # usage: [BUILD=folder] scripts/test.sh [options of ctest]     (for example -R rooms)
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-"$here/setup.sh" --plots
+"$here/setup.sh" --plots --site
 "$here/build.sh" all
 ctest --test-dir "${BUILD:-$here/../build}" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
