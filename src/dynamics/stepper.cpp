@@ -1,10 +1,8 @@
 #include "dynamics/stepper.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 
 #include "dynamics/near_field.hpp"
 
@@ -21,27 +19,62 @@ Vec3 gravity_of(const scene::Scene& scene) {
 
 }  // namespace
 
-Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene)
-    : comm_(&comm),
-      scene_(&scene),
-      kernel_(select_kernel(scene.features)),
-      time_step_(scene.time_step),
-      law_(make_law(scene)) {}
-
-void Stepper::use(const scene::Stage& stage) {
-  time_step_ = stage.time_step;
-  law_ = make_law(*scene_, stage);
+Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene) : comm_(&comm), scene_(&scene) {
+  kernel_ = select_kernel(scene.features);
+  use(scene.last());
 }
 
-void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps) {
+void Stepper::use(const scene::Stage& stage) {
+  stage_ = stage;
+  law_ = make_law(*scene_, stage);
+  speed_limit_ = speed_limit(*scene_, stage);
+  const double r = scene_->sizes.smallest();  // the lightest contact there is: r* = r / 2
+  const double overlap = deepest_overlap * r;
+  pressing_force_ = law_.pair.stiffness * std::sqrt(0.5 * r * overlap) * overlap;
+}
+
+void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps,
+                      const Moment& start) {
   for (std::int64_t step = 0; step < steps; ++step) {
     fit_ring(store, neighborhood);
     if (scene_->features.near_field) add_near_forces(store, neighborhood);
     last_ = kernel_(data(store, neighborhood));
     particle_steps_ += store.owned();
-    const bool failed = !last_.in_range || !near_in_range_;
-    if (neighborhood.follow(store, last_.max_speed, time_step_, failed)) fail(store, step);
+    ++since_look_;
+    const neighbor::Alarm alarm = neighborhood.follow(store, last_.max_speed, stage_.time_step, alarm_of_step(store));
+    if (alarm == neighbor::Alarm::none) continue;
+    const Moment now{start.layer, start.step + step + 1, start.time + static_cast<double>(step + 1) * stage_.time_step};
+    if (alarm == neighbor::Alarm::fault) report(inspected(store, neighborhood), now);
+    check(store, neighborhood, now);
   }
+}
+
+void Stepper::check(const particles::Store& store, const neighbor::Neighborhood& neighborhood, const Moment& now) {
+  const Finding found = inspect(inspected(store, neighborhood));
+  std::array<double, 2> shared{static_cast<double>(found.fault), last_.max_force};
+  comm_->max(shared);
+  if (shared[0] > 0.0) report(inspected(store, neighborhood), now);
+  since_look_ = 0;
+  looked_force_ = shared[1];
+}
+
+// From what the kernel tells anyway. Its speed is a bound, so particles are looked at only beyond the limit. An overlap
+// beyond the deepest while two close in gives a force beyond pressing_force_; so do sound impacts of large particles,
+// so it is not looked again at once unless the force doubles.
+neighbor::Alarm Stepper::alarm_of_step(const particles::Store& store) const {
+  if (!last_.in_range || !near_in_range_) return neighbor::Alarm::fault;
+  if (last_.max_speed > speed_limit_) {
+    for (LocalIndex i = 0; i < store.owned(); ++i) {
+      const Vec3 v = store.velocity(i);
+      if (std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) > speed_limit_) return neighbor::Alarm::fault;
+    }
+  }
+  const bool news = since_look_ >= rest_between_looks || last_.max_force > 2.0 * looked_force_;
+  return last_.max_force > pressing_force_ && news ? neighbor::Alarm::look : neighbor::Alarm::none;
+}
+
+Inspected Stepper::inspected(const particles::Store& store, const neighbor::Neighborhood& neighborhood) const {
+  return {*comm_, *scene_, store, neighborhood, stage_};
 }
 
 // The ring holds the window of the half list; with a near field, whose forces come first, it holds every particle.
@@ -72,7 +105,7 @@ StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& ne
       .ring_mask = ring_mask_,
       .law = law_,
       .force_quantum = scene_->force_quantum,
-      .time_step = time_step_,
+      .time_step = stage_.time_step,
       .gravity = gravity_of(*scene_),
       .drag = scene_->in.drag.coefficient,
       .fluid_velocity = scene_->in.drag.fluid_velocity,
@@ -83,36 +116,6 @@ StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& ne
 
 void Stepper::add_near_forces(const particles::Store& store, const neighbor::Neighborhood& neighborhood) {
   near_in_range_ = add_near_field(*scene_, store, neighborhood.near_pairs(), ring_begin_);
-}
-
-// Names the worst particle of the lowest rank that has one: not finite first, else the fastest.
-void Stepper::fail(const particles::Store& store, std::int64_t step) const {
-  LocalIndex worst = 0;
-  double fastest = -1.0;
-  for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const Vec3 v = store.velocity(i);
-    const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!std::isfinite(speed)) {
-      worst = i;
-      fastest = HUGE_VAL;
-      break;
-    }
-    if (speed > fastest) worst = i, fastest = speed;
-  }
-  const double most = comm_->max(fastest);
-  std::optional<std::string> complaint;
-  if (fastest == most && store.owned() > 0) {
-    const Vec3 x = store.position(worst);
-    const Vec3 v = store.velocity(worst);
-    complaint = fmt::format(
-        "numbers blew up: a force beyond {:.3g} N or a speed that is not finite, {} steps after the last "
-        "output; worst particle {} at ({:g}, {:g}, {:g}) m, velocity ({:g}, {:g}, {:g}) m/s, on rank {}; "
-        "use a smaller dynamics.time_step or softer particles",
-        max_quanta * scene_->force_quantum, step, store.ids()[static_cast<std::size_t>(worst)], x[0], x[1], x[2], v[0],
-        v[1], v[2], comm_->rank());
-  }
-  comm::agree(*comm_, ExitCode::numerical_failure, complaint);
-  throw Error(ExitCode::numerical_failure, "numbers blew up");
 }
 
 }  // namespace packmpi::dynamics

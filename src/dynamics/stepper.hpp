@@ -3,12 +3,16 @@
 #include <cstdint>
 
 #include "comm/comm.hpp"
+#include "dynamics/guard.hpp"
 #include "dynamics/kernel.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
 
 namespace packmpi::dynamics {
+
+/// A look at all overlaps costs about a step: so many steps lie between two, unless the largest force doubles.
+inline constexpr std::int64_t rest_between_looks = 100;
 
 /// Advances a store in time: kernel, then ghosts and lists. Holds the integer accumulators.
 class Stepper {
@@ -19,10 +23,15 @@ class Stepper {
   /// particles' are out of range. Local, but on every rank alike.
   void use(const scene::Stage& stage);
 
-  /// Collective. `steps` steps. On entry and on return lists and ghosts belong to the positions.
-  /// Throws Error(numerical_failure) on all ranks, within a step of the first force out of range or non-finite speed,
-  /// with the particle and what to change.
-  void advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps);
+  /// Collective. `steps` steps from `start` on. On entry and on return lists and ghosts belong to the positions.
+  /// Throws Error(numerical_failure) on all ranks (see report()): in the step of the first force out of range, speed
+  /// that is not finite or beyond its limit; within rest_between_looks of an overlap beyond the deepest that grows;
+  /// when lists are due, of a particle outside the container.
+  void advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps,
+               const Moment& start = {});
+
+  /// Collective. Throws as advance() if any particle has any fault. Cost: about a step.
+  void check(const particles::Store& store, const neighbor::Neighborhood& neighborhood, const Moment& now);
 
   /// Largest contact force and speed bound of the last step, this rank. [N], [m/s]
   [[nodiscard]] const StepReport& last() const noexcept { return last_; }
@@ -33,13 +42,18 @@ class Stepper {
   void fit_ring(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
   [[nodiscard]] StepData data(particles::Store& store, const neighbor::Neighborhood& neighborhood);
   void add_near_forces(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
-  [[noreturn]] void fail(const particles::Store& store, std::int64_t step) const;  // collective
+  [[nodiscard]] neighbor::Alarm alarm_of_step(const particles::Store& store) const;
+  [[nodiscard]] Inspected inspected(const particles::Store& store, const neighbor::Neighborhood& neighborhood) const;
 
   const comm::Comm* comm_;
   const scene::Scene* scene_;
-  Kernel kernel_;
-  double time_step_;  // [s]
-  Law law_;
+  Kernel kernel_ = nullptr;
+  scene::Stage stage_;
+  Law law_{};
+  double speed_limit_ = 0.0;     // [m/s]
+  double pressing_force_ = 0.0;  // [N] beyond it, overlaps are looked at
+  std::int64_t since_look_ = rest_between_looks;
+  double looked_force_ = 0.0;       // [N] largest on any rank at the last look
   std::vector<std::int64_t> ring_;  // accumulators, with room to align
   std::int64_t* ring_begin_ = nullptr;
   std::int64_t ring_mask_ = 0;

@@ -1,13 +1,13 @@
 #include "neighbor/neighborhood.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 
 #include "base/grow.hpp"
+#include "scene/limits.hpp"
 
 namespace packmpi::neighbor {
 namespace {
@@ -16,6 +16,15 @@ namespace {
 constexpr double live_on = 0.8;
 // No particle of a sound run is this many container heights up.
 constexpr double highest = 1000.0;
+
+// Levels of cells up to `top`. One cell holds all above the highest place of a sound run, so that a particle flung up
+// costs no memory, and cells can always be counted in a LocalIndex.
+int levels_to(double top, const scene::Scene& scene, const Cells& cells, int columns) {
+  const double most = static_cast<double>(scene::most_layers(scene.in) + 1) * scene.in.layers.thickness;
+  const double levels = std::max(std::min(top, most) - cells.bottom, 0.0) * cells.inverse_height;
+  const double countable = static_cast<double>(std::numeric_limits<LocalIndex>::max() - 1) / std::max(columns, 1) - 1.0;
+  return static_cast<int>(std::min(levels, std::max(countable, 0.0))) + 1;
+}
 
 }  // namespace
 
@@ -45,7 +54,6 @@ void Neighborhood::thaw(particles::Store& store) {
 
 void Neighborhood::rebuild(particles::Store& store) {
   store.set_ghosts(0);
-  check_inside(store);
   migrate(store);
   sort_owned(store);
   halo_.plan(store, choose_sends(store));
@@ -59,45 +67,42 @@ void Neighborhood::rebuild(particles::Store& store) {
   ++rebuilds_;
 }
 
-bool Neighborhood::follow(particles::Store& store, double max_speed, double time_step, bool failed) {
+Alarm Neighborhood::follow(particles::Store& store, double max_speed, double time_step, Alarm mine) {
   drift_ += max_speed * time_step;
-  std::array<double, 2> shared{failed || !std::isfinite(drift_) ? 0.0 : drift_,
-                               failed || !std::isfinite(drift_) ? 1.0 : 0.0};
+  if (!std::isfinite(drift_)) mine = Alarm::fault;
+  std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_, static_cast<double>(mine)};
   comm_->max(shared);
-  if (shared[1] > 0.0) return true;
+  const auto alarm = static_cast<Alarm>(static_cast<int>(shared[1]));
   const double limit = 0.5 * scene_->skin;
-  if (shared[0] <= limit) {
+  if (alarm == Alarm::fault || shared[0] <= limit) {
     halo_.refresh(store);
-    return false;
+    return alarm;
   }
   drift_ = largest_displacement(store);
   if (comm_->max(drift_) <= live_on * limit) {
     halo_.refresh(store);
-  } else {
-    rebuild(store);
+    return alarm;
   }
-  return false;
+  bool all_inside = true;
+  for (LocalIndex i = 0; i < store.owned() && all_inside; ++i) all_inside = is_inside(store, i);
+  if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) {
+    halo_.refresh(store);
+    return Alarm::fault;
+  }
+  rebuild(store);
+  return alarm;
 }
 
-void Neighborhood::check_inside(const particles::Store& store) const {
-  std::optional<std::string> complaint;
+bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const {
   const geometry::Box& box = scene_->box;
-  for (LocalIndex i = 0; i < store.owned() && !complaint; ++i) {
-    const Vec3 x = store.position(i);
-    const double r = store.radius(i);
-    const double z = x[static_cast<std::size_t>(box.vertical())];
-    bool inside = z > -r && z < highest * (box.height() + scene_->in.layers.thickness);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
-      inside = inside && x[a] > -r && x[a] < box.size[a] + r;
-    }
-    if (inside) continue;  // false for NaN too
-    const Vec3 v = store.velocity(i);
-    complaint = fmt::format(
-        "particle {} left the container: position ({:g}, {:g}, {:g}) m, velocity ({:g}, {:g}, {:g}) m/s, "
-        "radius {:g} m, on rank {}; use a smaller dynamics.time_step or softer particles",
-        store.ids()[static_cast<std::size_t>(i)], x[0], x[1], x[2], v[0], v[1], v[2], r, comm_->rank());
+  const Vec3 x = store.position(i);
+  const double r = store.radius(i);
+  const double z = x[static_cast<std::size_t>(box.vertical())];
+  bool inside = z > -r && z < highest * (box.height() + scene_->in.layers.thickness);
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
+    inside = inside && x[a] > -r && x[a] < box.size[a] + r;
   }
-  comm::agree(*comm_, ExitCode::numerical_failure, complaint);
+  return inside;
 }
 
 void Neighborhood::migrate(particles::Store& store) const {
@@ -141,7 +146,7 @@ void Neighborhood::sort_owned(particles::Store& store) {
   }
   cells_.inverse_height = 1.0 / scene_->column_width();
   cells_.bottom = still_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
-  cells_.levels = static_cast<int>((comm_->max(top) - cells_.bottom) * cells_.inverse_height) + 1;
+  cells_.levels = levels_to(comm_->max(top), *scene_, cells_, columns_.total());
   const auto levels = static_cast<std::size_t>(cells_.levels);
   cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
 

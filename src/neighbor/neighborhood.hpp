@@ -14,6 +14,10 @@
 
 namespace packmpi::neighbor {
 
+/// What a rank noticed in a step, in order of gravity: nothing; something that is worth a closer look; a state that
+/// must not be.
+enum class Alarm : int { none = 0, look = 1, fault = 2 };
+
 /// Lists and ghosts of the particles of a store. No result of a run depends on when or how they are built.
 class Neighborhood {
  public:
@@ -32,14 +36,17 @@ class Neighborhood {
   [[nodiscard]] const particles::Store& frozen() const noexcept { return still_.store(); }
 
   /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts, makes the lists.
-  /// Throws Error(numerical_failure) on all ranks if a particle is outside the container or not finite, naming it.
-  /// Cost: O(owned + ghosts), about as much as three steps.
+  /// Any position is taken, even one that is not finite. Cost: O(owned + ghosts), about as much as three steps.
   void rebuild(particles::Store& store);
 
   /// Collective. Tells that all particles moved for `time_step` at speeds of at most `max_speed` (this rank's own
-  /// bound), and that `failed` is true here; brings lists and ghosts up to date for the next step: rebuilds, or
-  /// refreshes the ghosts. Returns true on all ranks if any rank failed (and then does nothing else).
-  bool follow(particles::Store& store, double max_speed, double time_step, bool failed);
+  /// bound), and what this rank noticed; brings lists and ghosts up to date for the next step: rebuilds, or refreshes
+  /// the ghosts. Returns on all ranks the gravest alarm of any; a fault too if a speed is not finite, or if particles
+  /// are outside the container when lists are due. After a fault only the ghosts are refreshed.
+  [[nodiscard]] Alarm follow(particles::Store& store, double max_speed, double time_step, Alarm mine = Alarm::none);
+
+  /// Is owned particle `i` where one may be: its centre less than its radius beyond a wall, and finite? Local.
+  [[nodiscard]] bool is_inside(const particles::Store& store, LocalIndex i) const;
 
   [[nodiscard]] const PairList& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const PairList& near_pairs() const noexcept { return near_pairs_; }  ///< near field; empty when off
@@ -52,8 +59,7 @@ class Neighborhood {
   [[nodiscard]] std::vector<std::int64_t> column_counts(const particles::Store& store) const;
 
  private:
-  void check_inside(const particles::Store& store) const;  // collective
-  void migrate(particles::Store& store) const;             // collective
+  void migrate(particles::Store& store) const;  // collective
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
   void sort_ghosts(particles::Store& store);

@@ -11,7 +11,6 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "observe/measure.hpp"
 #include "output/checkpoint.hpp"
 #include "output/report.hpp"
 #include "packmpi/version.hpp"
@@ -41,7 +40,7 @@ const char* phase_name(output::Phase phase) {
 
 }  // namespace
 
-Keeper::Keeper(const Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
+Keeper::Keeper(Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
                const Options& options, const Origin& origin)
     : pile_(pile),
       stand_(stand),
@@ -83,7 +82,7 @@ void Keeper::look(bool due) {
   pile_.comm.max(shared);
   if (shared[1] > 0) stop(static_cast<Reason>(shared[1]));
   if (shared[0] == 0) return;
-  check_sound();
+  pile_.check();  // no checkpoint is written over a sound one by a state that is not
   try {
     write();
   } catch (const Error& error) {
@@ -107,15 +106,6 @@ bool Keeper::stop_file_there() {
   stop_seen_at_ = now;
   std::error_code ignored;
   return std::filesystem::exists(files_.stop, ignored);
-}
-
-void Keeper::check_sound() const {
-  const observe::Soundness sound = observe::soundness(pile_.comm, pile_.store, pile_.scene);
-  if (sound.non_finite == 0) return;
-  throw Error(ExitCode::numerical_failure,
-              fmt::format("{} particles have numbers that are not finite at step {}; no checkpoint is written over a "
-                          "sound one; use a smaller dynamics.time_step or softer particles",
-                          sound.non_finite, pile_.steps));
 }
 
 void Keeper::write() {
@@ -168,7 +158,7 @@ void Keeper::keep_going_without(const std::string& words) {
 }
 
 void Keeper::stop(Reason reason) {
-  check_sound();
+  pile_.check();
   if (!any_written_ || last_step_ != pile_.steps) write();
   constexpr std::array<const char*, 5> words{"", "a signal asked for it", "the STOP file is there",
                                              "the time limit is near", "--max-steps are done"};

@@ -18,8 +18,8 @@ namespace packmpi::run {
 /// it is given must outlive it.
 class Keeper {
  public:
-  Keeper(const Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
-         const Options& options, const Origin& origin);
+  Keeper(Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files, const Options& options,
+         const Origin& origin);
 
   /// Steps to make until the next look(); the same on all ranks, at least 1.
   [[nodiscard]] std::int64_t steps_to_look() const;
@@ -39,12 +39,11 @@ class Keeper {
   [[nodiscard]] Reason reason_to_stop();
   [[nodiscard]] bool out_of_time() const;
   [[nodiscard]] bool stop_file_there();
-  void check_sound() const;
   void write();
   void keep_going_without(const std::string& words);
   [[noreturn]] void stop(Reason reason);
 
-  const Pile& pile_;
+  Pile& pile_;
   const Stand& stand_;
   const output::RunRecord& record_;
   const Files& files_;

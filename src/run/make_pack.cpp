@@ -20,16 +20,10 @@
 #include "run/record.hpp"
 #include "run/restart.hpp"
 #include "run/settle.hpp"
+#include "scene/limits.hpp"
 
 namespace packmpi::run {
 namespace {
-
-// Every layer adds phi_0 h_0 of solid and no pile is denser than solid: more layers than this never come to H_d.
-std::int64_t most_layers(const scene::Scene& scene) {
-  const input::Layers& layers = scene.in.layers;
-  if (layers.maximum > 0) return layers.maximum;
-  return static_cast<std::int64_t>(std::ceil(scene.box.height() / (layers.fraction * layers.thickness))) + 2;
-}
 
 void insert_layer(Pile& pile, output::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
@@ -103,7 +97,7 @@ void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stan
 // The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.
 // Bounded.
 void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
-  const std::int64_t most = most_layers(pile.scene);
+  const std::int64_t most = scene::most_layers(pile.scene.in);
   const auto more = [&] {
     return record.height < record.height_asked && static_cast<std::int64_t>(record.layers.size()) < most;
   };

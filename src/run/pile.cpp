@@ -34,6 +34,8 @@ double Pile::time() const {
          static_cast<double>(thaw_steps) * scene.time_step;
 }
 
+dynamics::Moment Pile::moment() const { return {std::ssize(first_ids), steps, time()}; }
+
 double Pile::top() const {
   return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
 }

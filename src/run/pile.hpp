@@ -30,7 +30,11 @@ struct Pile {
   std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
 
   [[nodiscard]] double time() const;                  ///< [s] simulated
+  [[nodiscard]] dynamics::Moment moment() const;      ///< now, for messages
   [[nodiscard]] std::int64_t particle_steps() const;  ///< since the beginning, on all ranks. Collective
+
+  /// Collective. Throws Error(numerical_failure) if any moving particle is as none may be (dynamics::report()).
+  void check() { stepper.check(store, neighborhood, moment()); }
 
   /// Collective. Shares the columns out anew if that pays, and makes the lists.
   void balance();

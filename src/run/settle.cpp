@@ -126,7 +126,7 @@ Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& 
     if (course.done == plan.creep_from) course.phi_before = phi_of_moving(pile);
     const std::int64_t next = std::min(plan.next(course.done), course.done + keeper.steps_to_look());
     pile.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
-    pile.stepper.advance(pile.store, pile.neighborhood, next - course.done);
+    pile.stepper.advance(pile.store, pile.neighborhood, next - course.done, pile.moment());
     pile.steps += next - course.done;
     if (part == Part::thaw) pile.thaw_steps += next - course.done;
     course.done = next;
@@ -136,6 +136,7 @@ Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& 
     }
     if (!early) keeper.look();  // a part that is over goes on with what comes after it
   }
+  pile.check();  // what comes next takes all particles to be sound
   return result(pile, plan, course, early);
 }
 

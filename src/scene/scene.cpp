@@ -4,38 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/error.hpp"
+#include "scene/limits.hpp"
 
 namespace packmpi::scene {
 namespace {
 
 // Neighbour lists keep pairs up to skin beyond touching. The rate is flat between 0.075 and 0.1 r (doc/performance.md).
 constexpr double skin_per_radius = 0.1;
-// Room above the largest force of a regular impact before the integer sums give up, and their range in quanta.
-constexpr double force_headroom = 256.0;
-constexpr double largest_quanta = 1125899906842624.0;  // 2^50, see dynamics/kernel.hpp
-
-double mass(const input::Particles& particles, double radius) {
-  return particles.density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-}
-
-double pair_modulus(const input::Particles& particles, double youngs_modulus) {
-  return youngs_modulus / (2.0 * (1.0 - particles.poisson_ratio * particles.poisson_ratio));
-}
-
-// Speed at which a particle inserted at the top of a layer's region reaches its bottom; eq. (23) wants one.
-double impact_speed(const input::Input& in, double drop) {
-  const Vec3& v = in.layers.velocity;
-  return std::sqrt(2.0 * in.jamming.gravity * drop + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-double step_limit(const input::Input& in, double radius, double youngs_modulus) {
-  const double speed = impact_speed(in, in.layers.thickness);
-  const double modulus = pair_modulus(in.particles, youngs_modulus);
-  return contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, modulus, speed) / 5.0;
-}
 
 [[noreturn]] void refuse(const input::Input& in, const std::string& words) {
   throw Error(ExitCode::bad_input, in.file + ": " + words);
@@ -44,8 +21,9 @@ double step_limit(const input::Input& in, double radius, double youngs_modulus) 
 // The step `asked` under `key` for particles of this modulus; none: the limit of eq. (23).
 double choose_time_step(const input::Input& in, const Sizes& sizes, const char* key, std::optional<double> asked,
                         double youngs_modulus) {
+  const double speed = impact_speed(in, in.layers.thickness);
   if (!asked) {
-    const double limit = step_limit(in, sizes.smallest(), youngs_modulus);
+    const double limit = step_limit(in, sizes.smallest(), youngs_modulus, speed);
     if (!std::isfinite(limit)) {
       refuse(in, fmt::format("{}: \"auto\" needs gravity or a speed at insertion to find the impact speed of eq. (23); "
                              "give a number in seconds",
@@ -53,11 +31,13 @@ double choose_time_step(const input::Input& in, const Sizes& sizes, const char* 
     }
     return limit;
   }
-  const double limit = step_limit(in, sizes.mean(), youngs_modulus);
+  const double limit = step_limit(in, sizes.mean(), youngs_modulus, speed);
   if (*asked > limit) {
-    refuse(in, fmt::format("{}: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m and impact speed "
+    const bool overdamped = in.contact.damping_ratio > 1.0;
+    refuse(in, fmt::format("{}: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m{} and impact speed "
                            "{:.3g} m/s; use a smaller step, \"auto\", or softer particles",
-                           key, *asked, limit, sizes.mean(), impact_speed(in, in.layers.thickness)));
+                           key, *asked, limit, sizes.mean(),
+                           overdamped ? fmt::format(", damping_ratio {:g}", in.contact.damping_ratio) : "", speed));
   }
   return *asked;
 }
@@ -106,41 +86,6 @@ double choose_thaw(const input::Input& in) {
   return in.dynamics.thaw.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
 }
 
-// Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
-// never above the elastic force at an overlap of a whole radius. Beyond it the run stops with a message (exit 4).
-double largest_force(const Scene& scene) {
-  const input::Input& in = scene.in;
-  const double r = scene.sizes.largest();
-  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles, in.particles.youngs_modulus) *
-                   std::sqrt(r);  // against a rigid wall: r* = r, m* = m
-  const double m = mass(in.particles, r);
-  const double drop = scene.box.height() + 2.0 * in.layers.thickness;
-  const double speed = impact_speed(in, drop);
-  const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
-  const double column = m * in.jamming.gravity * drop / r;
-  const double elastic = k * r * std::sqrt(r);
-  const double impact = k * overlap * std::sqrt(overlap);
-  double force = std::max(impact > 0.0 ? std::min(force_headroom * impact, elastic) : elastic, force_headroom * column);
-  if (in.near_field) {
-    const auto& nf = *in.near_field;
-    const double d = scene.sizes.smallest();  // deep inside contact
-    const double near = std::abs(nf.alpha1) * std::pow(d, -nf.beta1) + std::abs(nf.alpha2) * std::pow(d, -nf.beta2);
-    force = std::max(force, 4.0 * near);
-  }
-  return force * (1.0 + std::max(in.contact.friction, in.contact.wall_friction));
-}
-
-double choose_quantum(const Scene& scene) {
-  const double exact = largest_force(scene) / largest_quanta;
-  if (!std::isfinite(exact) || exact <= 0.0) {
-    refuse(scene.in,
-           "particles: the forces of these radii and moduli are out of the range of numbers; check the units");
-  }
-  int exponent = 0;
-  std::frexp(exact, &exponent);  // exact <= 2^exponent
-  return std::ldexp(1.0, exponent);
-}
-
 Features features_of(const input::Input& in) {
   Features f;
   f.dimension = in.container.dimension;
@@ -171,7 +116,7 @@ double contact_duration(double reduced_mass, double reduced_radius, double reduc
 }
 
 double safe_time_step(const input::Input& in, const Sizes& sizes) {
-  return step_limit(in, sizes.smallest(), in.particles.youngs_modulus);
+  return step_limit(in, sizes.smallest(), in.particles.youngs_modulus, impact_speed(in, in.layers.thickness));
 }
 
 Scene build(const input::Input& in) {
@@ -189,7 +134,8 @@ Scene build(const input::Input& in) {
   scene.thaw = choose_thaw(in);
   if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
   check_periodic(in, scene);
-  scene.force_quantum = choose_quantum(scene);
+  scene.force_quantum = force_quantum(scene);
+  scene.speed_bound = speed_bound(scene);
   return scene;
 }
 

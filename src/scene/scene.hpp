@@ -41,6 +41,7 @@ struct Scene {
   Stage settling;          ///< of the layers
   double thaw = 0.0;       ///< [s] duration of the final stage
   double force_quantum = 0.0;  ///< [N] a power of two: forces are summed as integers of this unit
+  double speed_bound = 0.0;    ///< [m/s] no particle of a sound run is as fast
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].
   [[nodiscard]] double column_width() const noexcept { return reach + skin; }

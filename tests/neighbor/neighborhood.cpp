@@ -248,7 +248,7 @@ TEST(Neighborhood, FollowsMotionWithoutMissingATouchAndGhostsCarryTheirOwnersBit
     const double dt = 0.06 * w.scene.skin;
     for (int step = 0; step < 60; ++step) {
       const double fastest = move(w, dt);
-      ASSERT_FALSE(w.hood.follow(w.store, fastest, dt, false));
+      ASSERT_EQ(w.hood.follow(w.store, fastest, dt), Alarm::none);
     }
     EXPECT_GT(w.hood.rebuilds(), 3);
     EXPECT_LT(w.hood.rebuilds(), 60);
@@ -278,27 +278,37 @@ TEST(Neighborhood, FollowsMotionWithoutMissingATouchAndGhostsCarryTheirOwnersBit
   }
 }
 
-TEST(Neighborhood, NamesAParticleThatLeftTheContainerOnAllRanks) {
+TEST(Neighborhood, AFaultOnOneRankIsKnownToAll) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  World w(comm, test::small_input(3, 2.0, 0.05), 100);
+  const bool last = comm.rank() == comm.size() - 1;
+  EXPECT_EQ(w.hood.follow(w.store, 0.0, 1e-4, last ? Alarm::fault : Alarm::look), Alarm::fault);
+  EXPECT_EQ(w.hood.follow(w.store, 0.0, 1e-4, last ? Alarm::look : Alarm::none), Alarm::look);
+  EXPECT_EQ(w.hood.follow(w.store, 0.0, 1e-4), Alarm::none);
+  EXPECT_EQ(w.hood.follow(w.store, comm.rank() == 0 ? std::nan("") : 0.0, 1e-4), Alarm::fault);
+}
+
+TEST(Neighborhood, AParticleOutsideIsAFaultOnceListsAreDue) {
   const comm::Comm comm(MPI_COMM_WORLD);
   World w(comm, test::small_input(3, 2.0, 0.05), 100);
   for (LocalIndex i = 0; i < w.store.owned(); ++i) {
-    if (w.store.ids()[static_cast<std::size_t>(i)] == 42) w.store.record(i)[2] = std::nan("");
+    if (w.store.ids()[static_cast<std::size_t>(i)] == 42) w.store.record(i)[2] = -0.06;  // further out than a radius
   }
-  try {
-    w.hood.rebuild(w.store);
-    FAIL() << "a particle at NaN was taken";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::numerical_failure);
-    EXPECT_NE(std::string(error.what()).find("particle 42 left the container"), std::string::npos) << error.what();
-  }
+  const std::int64_t before = w.hood.rebuilds();
+  EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.4 * w.scene.skin / 0.1), Alarm::none);
+  EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.4 * w.scene.skin / 0.1), Alarm::fault);
+  EXPECT_EQ(w.hood.rebuilds(), before);
 }
 
-TEST(Neighborhood, AFailureOnOneRankIsKnownToAll) {
+TEST(Neighborhood, AParticleFlungUpCostsNoMemory) {
   const comm::Comm comm(MPI_COMM_WORLD);
   World w(comm, test::small_input(3, 2.0, 0.05), 100);
-  EXPECT_TRUE(w.hood.follow(w.store, 0.0, 1e-4, comm.rank() == comm.size() - 1));
-  EXPECT_FALSE(w.hood.follow(w.store, 0.0, 1e-4, false));
-  EXPECT_TRUE(w.hood.follow(w.store, comm.rank() == 0 ? std::nan("") : 0.0, 1e-4, false));
+  const std::size_t before = w.hood.bytes();
+  for (LocalIndex i = 0; i < w.store.owned(); ++i) {
+    if (w.store.ids()[static_cast<std::size_t>(i)] == 42) w.store.record(i)[2] = 1e12;
+  }
+  w.hood.rebuild(w.store);
+  EXPECT_LT(w.hood.bytes(), 20 * before);
 }
 
 TEST(Halo, CarriesOnlyWhatTheSceneUses) {
@@ -309,7 +319,7 @@ TEST(Halo, CarriesOnlyWhatTheSceneUses) {
       in.dynamics.rotation = rotation;
       World w(comm, in, 300);
       const std::int64_t before = w.hood.halo().counters().bytes;
-      ASSERT_FALSE(w.hood.follow(w.store, 0.0, 1e-4, false));
+      ASSERT_EQ(w.hood.follow(w.store, 0.0, 1e-4), Alarm::none);
       const std::int64_t sent = comm.sum(w.hood.halo().counters().bytes - before);
       const int doubles = 2 * dimension + (rotation ? (dimension == 3 ? 3 : 1) : 0);
       EXPECT_EQ(sent, comm.sum(std::int64_t{w.store.ghosts()}) * 8 * doubles);

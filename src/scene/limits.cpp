@@ -1,0 +1,129 @@
+#include "scene/limits.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace packmpi::scene {
+namespace {
+
+// Room above the largest force of a regular impact before the integer sums give up, and their range in quanta.
+constexpr double force_headroom = 256.0;
+constexpr double largest_quanta = 1125899906842624.0;  // 2^50, see dynamics/kernel.hpp
+// A quantum may be so much of the weight of the smallest particle at most.
+constexpr double coarsest = 1e-3;
+// Collisions pass energy on from large to small: a chain of three elastic impacts gives 7 times the speed.
+constexpr double speed_headroom = 16.0;
+
+double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+// |f| of the near field with a particle one smallest radius away, deep inside contact [N].
+double largest_near_force(const Scene& scene) {
+  if (!scene.in.near_field) return 0.0;
+  const input::NearField& near = *scene.in.near_field;
+  const double d = scene.sizes.smallest();
+  const double force =
+      std::abs(near.alpha1) * std::pow(d, -near.beta1) + std::abs(near.alpha2) * std::pow(d, -near.beta2);
+  if (std::isfinite(force)) return force;
+  throw Error(ExitCode::bad_input,
+              fmt::format("{}: near_field: the force at a distance of {:g} m is beyond the range of numbers; lower the "
+                          "exponents, and check the units of alpha1 and alpha2",
+                          scene.in.file, d));
+}
+
+// Elastic force [N] of a particle of radius r on a rigid wall at an overlap [m].
+double elastic_force(const input::Particles& particles, double r, double overlap) {
+  return 4.0 / 3.0 * 2.0 * pair_modulus(particles, particles.youngs_modulus) * std::sqrt(r * overlap) * overlap;
+}
+
+// Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
+// never above the elastic force at an overlap of a whole radius. Beyond it the run stops with a message (exit 4).
+double largest_force(const Scene& scene) {
+  const input::Input& in = scene.in;
+  const double r = scene.sizes.largest();
+  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles, in.particles.youngs_modulus) *
+                   std::sqrt(r);  // against a rigid wall: r* = r, m* = m
+  const double m = mass(in.particles, r);
+  const double drop = scene.box.height() + 2.0 * in.layers.thickness;
+  const double speed = impact_speed(in, drop);
+  const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
+  const double column = m * in.jamming.gravity * drop / r;
+  const double elastic = k * r * std::sqrt(r);
+  const double impact = k * overlap * std::sqrt(overlap);
+  const double contact =
+      std::max(impact > 0.0 ? std::min(force_headroom * impact, elastic) : elastic, force_headroom * column);
+  const double force = std::max(contact, 4.0 * largest_near_force(scene));
+  return force * (1.0 + std::max(in.contact.friction, in.contact.wall_friction));
+}
+
+// What the sums must resolve: the weight of the smallest particle, or without gravity a light touch of it.
+double least_force(const Scene& scene) {
+  const input::Input& in = scene.in;
+  const double r = scene.sizes.smallest();
+  if (in.jamming.gravity > 0.0) return mass(in.particles, r) * in.jamming.gravity;
+  return elastic_force(in.particles, r, 1e-3 * r);
+}
+
+// Speed that near forces can give the lightest particle: more than their work from the cut-off to deep inside contact,
+// by all particles that may be so near.
+double near_speed(const Scene& scene) {
+  if (!scene.in.near_field) return 0.0;
+  const double r = scene.sizes.smallest();
+  const double cutoff = scene.in.near_field->cutoff;
+  const double neighbors = std::pow(cutoff / r, scene.box.dimension);
+  return std::sqrt(2.0 * largest_near_force(scene) * cutoff * neighbors / mass(scene.in.particles, r));
+}
+
+}  // namespace
+
+double impact_speed(const input::Input& in, double drop) {
+  const double speed = norm(in.layers.velocity);
+  return std::sqrt(2.0 * in.jamming.gravity * drop + speed * speed);
+}
+
+double step_limit(const input::Input& in, double radius, double youngs_modulus, double speed) {
+  const double modulus = pair_modulus(in.particles, youngs_modulus);
+  const double limit = contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, modulus, speed) / 5.0;
+  // An explicit step dt of an oscillator is stable for omega dt < 2 (sqrt(xi^2 + 1) - xi): eq. (23) holds to xi = 1.
+  const double xi = std::max(in.contact.damping_ratio, 1.0);
+  return limit * ((std::sqrt(xi * xi + 1.0) - xi) / (std::sqrt(2.0) - 1.0));
+}
+
+std::int64_t most_layers(const input::Input& in) {
+  if (in.layers.maximum > 0) return in.layers.maximum;
+  return static_cast<std::int64_t>(std::ceil(in.container.size.back() / (in.layers.fraction * in.layers.thickness))) +
+         2;
+}
+
+double speed_bound(const Scene& scene) {
+  const input::Input& in = scene.in;
+  const double drop = static_cast<double>(most_layers(in)) * in.layers.thickness;  // were every layer on the last one
+  const double fluid = scene.features.drag ? norm(in.drag.fluid_velocity) : 0.0;
+  const double spin = scene.features.rotation ? norm(in.layers.spin) * scene.sizes.largest() : 0.0;
+  return speed_headroom * (impact_speed(in, drop) + fluid + spin + near_speed(scene));
+}
+
+double force_quantum(const Scene& scene) {
+  const double exact = largest_force(scene) / largest_quanta;
+  if (!std::isfinite(exact) || exact <= 0.0) {
+    throw Error(ExitCode::bad_input, scene.in.file +
+                                         ": particles: the forces of these radii and moduli are out of the range of "
+                                         "numbers; check the units");
+  }
+  int exponent = 0;
+  std::frexp(exact, &exponent);  // exact <= 2^exponent
+  const double quantum = std::ldexp(1.0, exponent);
+  const double least = least_force(scene);
+  if (quantum <= coarsest * least) return quantum;
+  throw Error(ExitCode::bad_input,
+              fmt::format("{}: jamming.gravity: forces up to {:.2g} N cannot be summed beside {:.2g} N, the {} of the "
+                          "smallest particle: they are 2^50 apart at most; lower {}, narrow the radii or raise gravity",
+                          scene.in.file, quantum * largest_quanta, least,
+                          scene.in.jamming.gravity > 0.0 ? "weight" : "lightest contact",
+                          scene.in.near_field ? "the near field" : "layers.velocity"));
+}
+
+}  // namespace packmpi::scene
