@@ -27,8 +27,8 @@ must() { "$@" || { failures=$((failures + 1)); echo "not true: $*"; }; }
 command=("$@")
 
 expect 0 '^packmpi [0-9]' --version
-expect 0 'packmpi check SCENE.toml' --help
-expect 2 'SCENE.toml is required' run
+expect 0 'packmpi SCENE.toml' --help
+expect 2 'SCENE is required' run
 expect 2 'no-such.toml' no-such.toml
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
