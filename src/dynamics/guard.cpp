@@ -168,6 +168,7 @@ std::string message(const Inspected& now, const Moment& moment, const Finding& f
 }  // namespace
 
 double speed_limit(const scene::Scene& scene, const scene::Stage& stage) {
+  if (scene.in.dynamics.theta > 0.0) return scene.speed_bound;  // implicit steps are halved where that is too far
   return std::min(scene.speed_bound, 0.5 * scene.sizes.smallest() / stage.time_step);
 }
 

@@ -18,17 +18,6 @@ double whole_power(double x, std::int64_t n) {
   return result;
 }
 
-/// From first to second, the nearest image; z = 0 in 2D.
-Vec3 separation(const geometry::Box& box, const Vec3& first, const Vec3& second) {
-  Vec3 d{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    d[a] = second[a] - first[a];
-    const bool periodic = a < static_cast<std::size_t>(box.lateral_axes()) && box.periodic[a];
-    if (periodic) d[a] = geometry::shortest(d[a], box.size[a]);
-  }
-  return d;
-}
-
 }  // namespace
 
 double inverse_power(double d, double exponent) {
@@ -50,7 +39,7 @@ bool add_near_field(const scene::Scene& scene, const particles::Store& store, co
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
-    const Vec3 x = separation(scene.box, store.position(i), store.position(j));
+    const Vec3 x = geometry::separation(scene.box, store.position(i), store.position(j));
     const double distance = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     if (distance == 0.0 || distance >= law.cutoff) continue;
     const double attraction = law.alpha1 * inverse_power(distance, law.beta1);

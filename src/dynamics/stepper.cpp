@@ -21,6 +21,7 @@ Vec3 gravity_of(const scene::Scene& scene) {
 
 Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene) : comm_(&comm), scene_(&scene) {
   kernel_ = select_kernel(scene.features);
+  if (scene.in.dynamics.theta > 0.0) implicit_ = std::make_unique<Implicit>(comm, scene);
   use(scene.last());
 }
 
@@ -36,9 +37,7 @@ void Stepper::use(const scene::Stage& stage) {
 void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborhood, std::int64_t steps,
                       const Moment& start) {
   for (std::int64_t step = 0; step < steps; ++step) {
-    fit_ring(store, neighborhood);
-    if (scene_->features.near_field) add_near_forces(store, neighborhood);
-    last_ = kernel_(data(store, neighborhood));
+    advance_one(store, neighborhood);
     particle_steps_ += store.owned();
     ++since_look_;
     const neighbor::Alarm alarm = neighborhood.follow(store, last_.max_speed, stage_.time_step, alarm_of_step(store));
@@ -75,6 +74,16 @@ neighbor::Alarm Stepper::alarm_of_step(const particles::Store& store) const {
 
 Inspected Stepper::inspected(const particles::Store& store, const neighbor::Neighborhood& neighborhood) const {
   return {*comm_, *scene_, store, neighborhood, stage_};
+}
+
+void Stepper::advance_one(particles::Store& store, neighbor::Neighborhood& neighborhood) {
+  if (implicit_) {
+    last_ = implicit_->step(law_, store, neighborhood, stage_.time_step);
+    return;
+  }
+  fit_ring(store, neighborhood);
+  if (scene_->features.near_field) add_near_forces(store, neighborhood);
+  last_ = kernel_(data(store, neighborhood));
 }
 
 // The ring holds the window of the half list; with a near field, whose forces come first, it holds every particle.

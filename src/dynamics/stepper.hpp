@@ -1,9 +1,11 @@
-/// Explicit dynamics of all particles, step after step (CC16 Algorithm 2, theta = 0).
+/// Dynamics of all particles, step after step: explicit (CC16 Algorithm 2, theta = 0), or implicit (theta > 0).
 #pragma once
 #include <cstdint>
+#include <memory>
 
 #include "comm/comm.hpp"
 #include "dynamics/guard.hpp"
+#include "dynamics/implicit.hpp"
 #include "dynamics/kernel.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
@@ -36,9 +38,12 @@ class Stepper {
   /// Largest contact force and speed bound of the last step, this rank. [N], [m/s]
   [[nodiscard]] const StepReport& last() const noexcept { return last_; }
   [[nodiscard]] std::int64_t particle_steps() const noexcept { return particle_steps_; }  ///< this rank, so far
+  /// Null if theta is 0.
+  [[nodiscard]] const Implicit* implicit() const noexcept { return implicit_.get(); }
   [[nodiscard]] std::size_t bytes() const noexcept { return ring_.capacity() * sizeof(std::int64_t); }
 
  private:
+  void advance_one(particles::Store& store, neighbor::Neighborhood& neighborhood);
   void fit_ring(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
   [[nodiscard]] StepData data(particles::Store& store, const neighbor::Neighborhood& neighborhood);
   void add_near_forces(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
@@ -48,6 +53,7 @@ class Stepper {
   const comm::Comm* comm_;
   const scene::Scene* scene_;
   Kernel kernel_ = nullptr;
+  std::unique_ptr<Implicit> implicit_;
   scene::Stage stage_;
   Law law_{};
   double speed_limit_ = 0.0;     // [m/s]

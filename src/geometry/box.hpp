@@ -33,4 +33,14 @@ struct Box {
   return d < -half ? d + period : d;
 }
 
+/// From `first` to the nearest image of `second` [m]; z = 0 in 2D.
+[[nodiscard]] constexpr Vec3 separation(const Box& box, const Vec3& first, const Vec3& second) {
+  Vec3 d{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    d[a] = second[a] - first[a];
+    if (a < static_cast<std::size_t>(box.lateral_axes()) && box.periodic[a]) d[a] = shortest(d[a], box.size[a]);
+  }
+  return d;
+}
+
 }  // namespace packmpi::geometry

@@ -181,6 +181,19 @@ void check_features(const Case& scene) {
   }
 }
 
+void check_theta(const Case& scene) {
+  const double theta = scene.in.dynamics.theta;
+  if (theta == 0.0) return;
+  if (theta < 0.5) {
+    scene.refuse("dynamics.theta", fmt::format("{:g} is neither explicit nor stable; give 0, or 0.5 to 1", theta));
+  }
+  if (scene.in.contact.regularisation == Regularisation::none) {
+    scene.refuse("contact.regularisation",
+                 "friction that jumps with the slip has no derivative for the implicit scheme; use \"stop\" or "
+                 "\"viscous\", or dynamics.theta = 0");
+  }
+}
+
 void check_checkpoint(const Case& scene) {
   const std::string& every = scene.in.checkpoint.every;
   if (rhythm_of(every)) return;
@@ -201,6 +214,7 @@ void check(const Input& in, const Document& document) {
   check_time(scene);
   check_stages(scene);
   check_features(scene);
+  check_theta(scene);
   check_checkpoint(scene);
 }
 

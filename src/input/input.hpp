@@ -82,7 +82,7 @@ struct NearField {  ///< f_ij = (alpha1 d^-beta1 - alpha2 d^-beta2) n_ij for d <
 
 struct Dynamics {
   bool rotation = true;
-  double theta = 0.0;               ///< only 0 (explicit) in this version
+  double theta = 0.0;               ///< 0: explicit; 0.5 to 1: implicit
   std::optional<double> time_step;  ///< [s]; none: "auto" (eq. 23)
   StopRule stop = StopRule::duration;
   double settled_energy = 0.0, settled_drift = 0.0;  ///< [-] limits of "settled"

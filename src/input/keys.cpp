@@ -221,8 +221,8 @@ std::vector<Key> dynamics_keys() {
   return {
     word("dynamics.rotation", at(dynamics, &Dynamics::rotation), "true",
          "Particles spin. Off: there is no spin state at all, and slip is measured between centres."),
-    only(0, real("dynamics.theta", at(dynamics, &Dynamics::theta), plain, between(0, 1), "0.0",
-         "Time integration: 0 is the explicit Algorithm 2 of the paper.")),
+    real("dynamics.theta", at(dynamics, &Dynamics::theta), plain, between(0, 1), "0.0",
+         "Time integration: 0 is the explicit Algorithm 2 of the paper; 0.5 (second order) to 1 (most damped) are implicit, and slow."),
     real("dynamics.time_step", at(dynamics, &Dynamics::time_step), time, above(0), "auto",
          "Time step, or \"auto\": from the contact duration, eq. (23)."),
     word("dynamics.stop", at(dynamics, &Dynamics::stop), "duration",

@@ -144,6 +144,15 @@ void Halo::refresh(particles::Store& store) {
   counters_.bytes += static_cast<std::int64_t>(send_buffer_.size() * sizeof(double));
 }
 
+void Halo::share(std::span<std::int64_t> values) const {
+  if (comm_->size() == 1) return;
+  std::vector<std::int64_t> out(send_slots_.size()), in(arrival_slot_.size());
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = values[static_cast<std::size_t>(send_slots_[k])];
+  check(PetscSFBcastBegin(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
+  check(PetscSFBcastEnd(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
+  for (std::size_t k = 0; k < in.size(); ++k) values[static_cast<std::size_t>(arrival_slot_[k])] = in[k];
+}
+
 std::size_t Halo::bytes() const noexcept {
   return (send_buffer_.capacity() + receive_buffer_.capacity()) * sizeof(double) +
          (send_slots_.capacity() + arrival_slot_.capacity()) * sizeof(LocalIndex);

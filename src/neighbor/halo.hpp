@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "comm/comm.hpp"
@@ -34,6 +35,10 @@ class Halo {
 
   /// Collective. Position, velocity and spin of every ghost from its owner. One message for each neighbour.
   void refresh(particles::Store& store);
+
+  /// Collective. A number of each owned particle to its ghosts: values[slot], as long as the store at the last plan().
+  /// Entries of slots that are not the halo's stay.
+  void share(std::span<std::int64_t> values) const;
 
   /// Exact counters since construction.
   struct Counters {

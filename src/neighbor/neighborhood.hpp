@@ -1,6 +1,7 @@
 /// Who is near whom: migration, memory order, ghosts and Verlet lists of one rank, and when they must be made anew.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "comm/comm.hpp"
@@ -47,6 +48,12 @@ class Neighborhood {
 
   /// Is owned particle `i` where one may be: its centre less than its radius beyond a wall, and finite? Local.
   [[nodiscard]] bool is_inside(const particles::Store& store, LocalIndex i) const;
+
+  /// Collective. Ghosts take position, velocity and spin of their owners. follow() does it, too; this is for trial
+  /// states within a step.
+  void refresh_ghosts(particles::Store& store) { halo_.refresh(store); }
+  /// Collective. A number of each owned particle to its ghosts, by slot; see Halo::share.
+  void share(std::span<std::int64_t> values) const { halo_.share(values); }
 
   [[nodiscard]] const PairList& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const PairList& near_pairs() const noexcept { return near_pairs_; }  ///< near field; empty when off

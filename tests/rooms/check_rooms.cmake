@@ -12,7 +12,7 @@ set(libraries
   "toml[+][+]/.*=input"
   "CLI/.*=run"
   "Random123/.*=base"
-  "Eigen/.*|unsupported/Eigen/.*=geometry"
+  "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"
   "nlohmann/.*=base output run")
 
 function(report where text)
