@@ -7,7 +7,9 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "input/grading.hpp"
 #include "input/rhythm.hpp"
 #include "input/words.hpp"
 
@@ -25,9 +27,39 @@ struct Case {
   [[nodiscard]] const Radius& radius() const { return in.particles.radius; }
   [[nodiscard]] bool equal() const { return radius().distribution == SizeDistribution::equal; }
   [[nodiscard]] bool plane() const { return in.container.dimension == 2; }
-  [[nodiscard]] double smallest() const { return equal() ? radius().value : radius().min; }
-  [[nodiscard]] double largest() const { return equal() ? radius().value : radius().max; }
-  [[nodiscard]] const char* largest_key() const { return equal() ? "particles.radius.value" : "particles.radius.max"; }
+  [[nodiscard]] double smallest() const { return bounds().front(); }
+  [[nodiscard]] double largest() const { return bounds().back(); }
+  /// Smallest and largest radius, or more in between.
+  [[nodiscard]] std::vector<double> bounds() const {
+    switch (radius().distribution) {
+      case SizeDistribution::equal:
+        return {radius().value};
+      case SizeDistribution::bidisperse:
+        return {radius().small, radius().large};
+      case SizeDistribution::discrete:
+        return radius().radii;
+      case SizeDistribution::grading: {
+        const Curve curve = kept_curve(radius());
+        return {0.5 * curve.front()[0], 0.5 * curve.back()[0]};
+      }
+      default:
+        return {radius().min, radius().max};
+    }
+  }
+  [[nodiscard]] const char* largest_key() const {
+    switch (radius().distribution) {
+      case SizeDistribution::equal:
+        return "particles.radius.value";
+      case SizeDistribution::bidisperse:
+        return "particles.radius.large";
+      case SizeDistribution::discrete:
+        return "particles.radius.radii";
+      case SizeDistribution::grading:
+        return "particles.radius.diameter_curve";
+      default:
+        return "particles.radius.max";
+    }
+  }
   [[nodiscard]] double height() const { return in.container.size.back(); }
   /// How many particles of radius r fill the solid fraction `fraction` of a box `high` [m] on the container's floor.
   /// A product of ratios, so that no power of a length under- or overflows on its own.
@@ -40,33 +72,87 @@ struct Case {
   }
 };
 
-/// The share of a Gaussian's draws that fall into [min, max].
+/// The share of a Gaussian, lognormal or Weibull distribution that falls into [min, max].
 double kept_share(const Radius& radius) {
-  const double scale = radius.sd * std::numbers::sqrt2;
-  return 0.5 * (std::erf((radius.max - radius.mean) / scale) - std::erf((radius.min - radius.mean) / scale));
+  const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); };
+  const auto below = [&](double r) {
+    if (radius.distribution == SizeDistribution::gaussian) return normal((r - radius.mean) / radius.sd);
+    if (radius.distribution == SizeDistribution::lognormal) return normal(std::log(r / radius.median) / radius.log_sd);
+    return -std::expm1(-std::pow(r / radius.scale, radius.shape));
+  };
+  return below(radius.max) - below(radius.min);
 }
 
-void check_radii(const Case& scene) {
+void check_truncation(const Case& scene) {
   const Radius& radius = scene.radius();
-  if (scene.equal()) return;
   if (radius.min >= radius.max) {
     scene.refuse("particles.radius.min",
                  fmt::format("{:g} m is not below max = {:g} m; exchange them, or use distribution = \"equal\"",
                              radius.min, radius.max));
   }
-  if (radius.distribution != SizeDistribution::gaussian) return;
-  if (radius.mean < radius.min || radius.mean > radius.max) {
+  if (radius.distribution == SizeDistribution::uniform) return;
+  const bool gaussian = radius.distribution == SizeDistribution::gaussian;
+  if (gaussian && (radius.mean < radius.min || radius.mean > radius.max)) {
     scene.refuse("particles.radius.mean",
                  fmt::format("{:g} m is outside min = {:g} m and max = {:g} m; move one of them", radius.mean,
                              radius.min, radius.max));
   }
   constexpr double least_share = 0.01;  // rejection redraws stay below a hundred on average
   if (kept_share(radius) < least_share) {
-    scene.refuse(
-        "particles.radius.sd",
-        fmt::format("less than {:g} % of the draws fall between min = {:g} m and max = {:g} m; widen them, or use "
-                    "distribution = \"uniform\"",
-                    100.0 * least_share, radius.min, radius.max));
+    scene.refuse(gaussian                                             ? "particles.radius.sd"
+                 : radius.distribution == SizeDistribution::lognormal ? "particles.radius.log_sd"
+                                                                      : "particles.radius.shape",
+                 fmt::format("less than {:g} % of the {} fall between min = {:g} m and max = {:g} m; widen them, or "
+                             "use distribution = \"uniform\"",
+                             100.0 * least_share, gaussian ? "draws" : "distribution", radius.min, radius.max));
+  }
+}
+
+void check_classes(const Case& scene) {
+  const Radius& radius = scene.radius();
+  if (radius.shares.size() != radius.radii.size()) {
+    scene.refuse("particles.radius.shares",
+                 fmt::format("{} shares for {} radii; give one for each", radius.shares.size(), radius.radii.size()));
+  }
+  if (radius.radii.empty()) scene.refuse("particles.radius.radii", "is empty; give a radius at least");
+  for (std::size_t k = 1; k < radius.radii.size(); ++k) {
+    if (radius.radii[k - 1] < radius.radii[k]) continue;
+    scene.refuse("particles.radius.radii",
+                 fmt::format("{:g} m follows {:g} m; radii must ascend", radius.radii[k], radius.radii[k - 1]));
+  }
+}
+
+void check_grading(const Case& scene) {
+  const Radius& radius = scene.radius();
+  if (radius.diameter_curve.empty()) {
+    scene.refuse("particles.radius.diameter_curve",
+                 "is missing; give points [diameter, percent passing], or diameter_curve_file");
+  }
+  if (const std::string words = flaw(radius.diameter_curve); !words.empty()) {
+    scene.refuse("particles.radius.diameter_curve", words);
+  }
+  if (radius.keep_percent[0] >= radius.keep_percent[1]) {
+    scene.refuse("particles.radius.keep_percent",
+                 fmt::format("{:g} is not below {:g}; exchange them", radius.keep_percent[0], radius.keep_percent[1]));
+  }
+}
+
+void check_radii(const Case& scene) {
+  const Radius& radius = scene.radius();
+  switch (radius.distribution) {
+    case SizeDistribution::equal:
+      return;
+    case SizeDistribution::bidisperse:
+      if (radius.small < radius.large) return;
+      scene.refuse("particles.radius.small",
+                   fmt::format("{:g} m is not below large = {:g} m; exchange them, or use distribution = \"equal\"",
+                               radius.small, radius.large));
+    case SizeDistribution::discrete:
+      return check_classes(scene);
+    case SizeDistribution::grading:
+      return check_grading(scene);
+    default:
+      return check_truncation(scene);
   }
 }
 
@@ -102,7 +188,8 @@ void check_fraction(const Case& scene) {
                     layers.fraction, saturation, scene.plane() ? "discs" : "spheres", scene.plane() ? "0.4" : "0.25"));
   }
   // The last particle may overshoot: n - 1 of them must hold less than phi_0, n can be the densest packing at most.
-  const double graded_limit = large ? 1.25 * saturation : densest;
+  const bool narrow = scene.largest() <= 2.0 * scene.smallest();  // no room for small ones between large ones
+  const double graded_limit = large && narrow ? 1.25 * saturation : densest;
   const double overshoot = 1.0 / scene.particles_in(layers.thickness, 1.0, scene.largest());
   if (layers.fraction > graded_limit + overshoot) {
     scene.refuse("layers.fraction", fmt::format("{:g} cannot be reached by random insertion; lower it ({} is usual)",
@@ -114,9 +201,11 @@ void check_counts(const Case& scene) {
   constexpr double most_particles = 0x1p40, most_layers = 0x1p24;
   const Layers& layers = scene.in.layers;
   const double settled = scene.plane() ? 0.85 : 0.6;
-  const double typical = scene.radius().distribution == SizeDistribution::gaussian
-                             ? scene.radius().mean
-                             : 0.5 * (scene.smallest() + scene.largest());
+  const Radius& radius = scene.radius();
+  const bool by_number = radius.weighting == Weighting::number;
+  double typical = scene.largest();  // of the others, that many at least; scene::build knows more
+  if (by_number && radius.distribution == SizeDistribution::gaussian) typical = radius.mean;
+  if (by_number && radius.distribution == SizeDistribution::uniform) typical = 0.5 * (radius.min + radius.max);
   const double count = scene.particles_in(scene.height(), settled, typical);
   if (!(count <= most_particles)) {
     scene.refuse("container.size",

@@ -12,7 +12,9 @@
 namespace packmpi::input {
 
 enum class Boundary { wall, periodic };
-enum class SizeDistribution { equal, gaussian, uniform };
+enum class SizeDistribution { equal, gaussian, uniform, lognormal, weibull, bidisperse, discrete, grading };
+enum class Weighting { number, mass };
+enum class Interpolation { log, linear };
 enum class HeightRule { surface, highest };
 enum class FrictionVelocity { contact, centre };
 enum class Regularisation { stop, viscous, none };
@@ -27,12 +29,24 @@ struct Container {
   std::vector<Boundary> boundary;  ///< one per lateral axis
 };
 
+/// Points [diameter in m, percent passing], ascending.
+using Curve = std::vector<std::array<double, 2>>;
+
 struct Radius {
   SizeDistribution distribution = SizeDistribution::equal;
-  double value = 0.0;           ///< [m] equal
-  double mean = 0.0, sd = 0.0;  ///< [m] gaussian, by number
-  double min = 0.0, max = 0.0;  ///< [m] gaussian (truncation), uniform
-  std::string weighting;        ///< "number"; mandatory where the distribution is not "equal"
+  Weighting weighting = Weighting::number;           ///< what the distribution counts: particles, or their mass
+  double value = 0.0;                                ///< [m] equal
+  double mean = 0.0, sd = 0.0;                       ///< [m] gaussian
+  double median = 0.0, log_sd = 0.0;                 ///< [m], [-] lognormal: sd of ln(radius)
+  double scale = 0.0, shape = 0.0;                   ///< [m], [-] weibull
+  double min = 0.0, max = 0.0;                       ///< [m] uniform; truncation of gaussian, lognormal, weibull
+  double small = 0.0, large = 0.0;                   ///< [m] bidisperse
+  double large_share = 0.0;                          ///< [-] bidisperse
+  std::vector<double> radii, shares;                 ///< [m], any unit: discrete
+  Curve diameter_curve;                              ///< grading; of diameters, as sieves have them
+  std::string diameter_curve_file;                   ///< CSV beside the scene; "" once it has been read
+  Interpolation interpolation = Interpolation::log;  ///< grading: linear in log(diameter) or in the diameter
+  std::array<double, 2> keep_percent{0.0, 100.0};    ///< grading: what lies outside is left out
 };
 
 struct Particles {

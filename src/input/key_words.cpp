@@ -58,6 +58,10 @@ std::size_t entries(const Key& key, const Input& in) {
       return dimension - 1;
     case Count::spin_axes:
       return dimension == 3 ? 3 : 1;
+    case Count::two:
+      return 2;
+    case Count::any:
+      return 0;
     case Count::one:
       break;
   }
@@ -93,6 +97,7 @@ std::string wanted(const Key& key) {
   for (const std::string_view one : choices(key)) quotes.push_back(fmt::format("\"{}\"", one));
   if (!quotes.empty()) return joined(std::vector<std::string_view>(quotes.begin(), quotes.end()));
   const Slot slot = sample(key);
+  if (std::holds_alternative<Curve*>(slot)) return a_number("a pair: a diameter", key) + " and the percentage passing";
   if (std::holds_alternative<bool*>(slot)) return "true or false";
   if (std::holds_alternative<std::string*>(slot)) return "a text in quotes";
   if (std::holds_alternative<std::optional<double>*>(slot)) return a_number("a number", key) + " or \"auto\"";

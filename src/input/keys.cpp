@@ -88,8 +88,22 @@ bool is(const Input& in, SizeDistribution one) { return in.particles.radius.dist
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
 constexpr Condition gaussian{"distribution = \"gaussian\"",
                              [](const Input& in) { return is(in, SizeDistribution::gaussian); }};
-constexpr Condition graded{"distribution = \"gaussian\" or \"uniform\"",
-                           [](const Input& in) { return !equal.holds(in); }};
+constexpr Condition lognormal{"distribution = \"lognormal\"",
+                              [](const Input& in) { return is(in, SizeDistribution::lognormal); }};
+constexpr Condition weibull{"distribution = \"weibull\"",
+                            [](const Input& in) { return is(in, SizeDistribution::weibull); }};
+constexpr Condition bidisperse{"distribution = \"bidisperse\"",
+                               [](const Input& in) { return is(in, SizeDistribution::bidisperse); }};
+constexpr Condition discrete{"distribution = \"discrete\"",
+                             [](const Input& in) { return is(in, SizeDistribution::discrete); }};
+constexpr Condition grading{"distribution = \"grading\"",
+                            [](const Input& in) { return is(in, SizeDistribution::grading); }};
+constexpr Condition bounded{"distribution = \"gaussian\", \"uniform\", \"lognormal\" or \"weibull\"",
+                            [](const Input& in) {
+                              return is(in, SizeDistribution::gaussian) || is(in, SizeDistribution::uniform) ||
+                                     is(in, SizeDistribution::lognormal) || is(in, SizeDistribution::weibull);
+                            }};
+constexpr Condition graded{"distributions other than \"equal\"", [](const Input& in) { return !equal.holds(in); }};
 constexpr Condition viscous{"regularisation = \"viscous\"",
                             [](const Input& in) { return in.contact.regularisation == Regularisation::viscous; }};
 constexpr Condition settled{"stop = \"settled\"",
@@ -123,29 +137,58 @@ std::vector<Key> container_keys() {
 
 std::vector<Key> particle_keys() {
   const auto particles = &Input::particles;
-  const auto radius = &Particles::radius;
   return {
     real("particles.density", at(particles, &Particles::density), density, above(0), mandatory, "Density of the material."),
     real("particles.youngs_modulus", at(particles, &Particles::youngs_modulus), pressure, above(0), mandatory,
          "Young's modulus E. Softer particles take larger steps and overlap more: 7e-4 r at 1e8 Pa, 3e-3 r at 1e7."),
     real("particles.poisson_ratio", at(particles, &Particles::poisson_ratio), plain, Range{-1, 0.5, true, false}, mandatory,
          "Poisson's ratio nu."),
-    later({"lognormal", "weibull", "bidisperse", "grading"},
-      word("particles.radius.distribution", at(particles, radius, &Radius::distribution), mandatory,
-         "Which radii there are. They are drawn before placing, so the distribution is exact.")),
-    when(equal, real("particles.radius.value", at(particles, radius, &Radius::value), length, above(0), mandatory,
+  };
+}
+
+std::vector<Key> radius_keys() {
+  const auto at_radius = [](auto member) { return at(&Input::particles, &Particles::radius, member); };
+  return {
+    word("particles.radius.distribution", at_radius(&Radius::distribution), mandatory,
+         "Which radii there are. They are drawn before placing, so that insertion does not distort them."),
+    when(graded, word("particles.radius.weighting", at_radius(&Radius::weighting), mandatory,
+         "What the distribution counts: \"number\", the share of particles; \"mass\", the share of mass, as sieves do.")),
+    when(equal, real("particles.radius.value", at_radius(&Radius::value), length, above(0), mandatory,
          "Radius of every particle.")),
-    when(gaussian, real("particles.radius.mean", at(particles, radius, &Radius::mean), length, above(0), mandatory,
+    when(gaussian, real("particles.radius.mean", at_radius(&Radius::mean), length, above(0), mandatory,
          "Mean before truncation.")),
-    when(gaussian, real("particles.radius.sd", at(particles, radius, &Radius::sd), length, above(0), mandatory,
+    when(gaussian, real("particles.radius.sd", at_radius(&Radius::sd), length, above(0), mandatory,
          "Standard deviation before truncation.")),
-    when(graded, real("particles.radius.min", at(particles, radius, &Radius::min), length, above(0), mandatory,
-         "Smallest radius.")),
-    when(graded, real("particles.radius.max", at(particles, radius, &Radius::max), length, above(0), mandatory,
-         "Largest radius.")),
-    when(graded, later({"mass"},
-      word_of("particles.radius.weighting", at(particles, radius, &Radius::weighting), {"number", "mass"}, mandatory,
-         "What the distribution counts: \"number\", the share of particles."))),
+    when(lognormal, real("particles.radius.median", at_radius(&Radius::median), length, above(0), mandatory,
+         "Median radius before truncation.")),
+    when(lognormal, real("particles.radius.log_sd", at_radius(&Radius::log_sd), plain, Range{0, 5, true, false}, mandatory,
+         "Standard deviation of ln(radius): the logarithm of the geometric standard deviation.")),
+    when(weibull, real("particles.radius.scale", at_radius(&Radius::scale), length, above(0), mandatory,
+         "Radius below which 63.2 % are (Rosin-Rammler: 1 - exp(-(r / scale)^shape) are finer), before truncation.")),
+    when(weibull, real("particles.radius.shape", at_radius(&Radius::shape), plain, Range{0, 100, true, false}, mandatory,
+         "Exponent of the same; a narrower distribution has a larger one.")),
+    when(bounded, real("particles.radius.min", at_radius(&Radius::min), length, above(0), mandatory,
+         "Smallest radius: the distribution is cut here.")),
+    when(bounded, real("particles.radius.max", at_radius(&Radius::max), length, above(0), mandatory,
+         "Largest radius: the distribution is cut here.")),
+    when(bidisperse, real("particles.radius.small", at_radius(&Radius::small), length, above(0), mandatory,
+         "Radius of the small particles.")),
+    when(bidisperse, real("particles.radius.large", at_radius(&Radius::large), length, above(0), mandatory,
+         "Radius of the large particles.")),
+    when(bidisperse, real("particles.radius.large_share", at_radius(&Radius::large_share), ratio, inside(0, 1), mandatory,
+         "Share of the large particles, by the weighting.")),
+    when(discrete, reals("particles.radius.radii", at_radius(&Radius::radii), Count::any, length, above(0), mandatory,
+         "The radii there are, ascending.")),
+    when(discrete, reals("particles.radius.shares", at_radius(&Radius::shares), Count::any, plain, above(0), mandatory,
+         "The share of each radius, by the weighting; only their ratios count.")),
+    when(grading, reals("particles.radius.diameter_curve", at_radius(&Radius::diameter_curve), Count::any, length, above(0), "[]",
+         "The grading curve: DIAMETERS (sieve openings), each with the percentage that passes, from 0 to 100.")),
+    when(grading, word("particles.radius.diameter_curve_file", at_radius(&Radius::diameter_curve_file), R"("")",
+         "The same as a CSV file in the scene's folder; its first line is `diameter_mm,percent_passing`.")),
+    when(grading, word("particles.radius.interpolation", at_radius(&Radius::interpolation), R"("log")",
+         "Between the points, the percentage is linear in the logarithm of the diameter, or in the diameter.")),
+    when(grading, reals("particles.radius.keep_percent", at_radius(&Radius::keep_percent), Count::two, plain, between(0, 100), "[0.0, 100.0]",
+         "Leave out what the curve has outside of these percentages: [5, 100] drops the finest 5 %.")),
   };
 }
 
@@ -263,8 +306,8 @@ std::vector<Key> program_keys() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all;
-    for (const auto& part : {general_keys(), container_keys(), particle_keys(), layer_keys(), force_keys(),
-                             near_field_keys(), dynamics_keys(), program_keys()}) {
+    for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(),
+                             force_keys(), near_field_keys(), dynamics_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

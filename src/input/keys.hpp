@@ -18,8 +18,9 @@ namespace packmpi::input {
 
 /// Where a key's value goes. Its type decides what the file may say.
 using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
-                          Vec3*, std::vector<double>*, std::vector<Boundary>*, SizeDistribution*, HeightRule*,
-                          FrictionVelocity*, Regularisation*, WallStiffness*, StopRule*, Precision*, Decomposition*>;
+                          Vec3*, std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*,
+                          SizeDistribution*, Weighting*, Interpolation*, HeightRule*, FrictionVelocity*,
+                          Regularisation*, WallStiffness*, StopRule*, Precision*, Decomposition*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {
@@ -31,8 +32,8 @@ struct Range {
   [[nodiscard]] std::string words() const;  ///< "> 0", ">= 0 and < 1", ""
 };
 
-/// How many numbers a list has.
-enum class Count { one, axes, lateral_axes, spin_axes };
+/// How many entries a list has; `any`: as many as the file gives, pairs in a curve.
+enum class Count { one, two, axes, lateral_axes, spin_axes, any };
 
 /// When a key belongs to a scene.
 struct Condition {
@@ -64,7 +65,7 @@ struct Key {
 /// The key at `path`, or null.
 [[nodiscard]] const Key* find_key(std::string_view path);
 
-/// Entries the key's list has in this scene.
+/// Entries the key's list has in this scene; 0: any number.
 [[nodiscard]] std::size_t entries(const Key& key, const Input& in);
 
 /// The words the key can have, those to be refused left out; empty for a key of another type.

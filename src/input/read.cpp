@@ -103,9 +103,11 @@ void read_key(const Key& key, const Document& document, Input& in) {
   } else if (key.standard) {
     store_default(key, in);
   } else {
+    const std::size_t count = entries(key, in);
+    const std::string list = count == 0 ? "a list" : fmt::format("a list of {}", count);
     const bool is_list = key.count != Count::one;
     fail(document.place(key.path), key.path,
-         is_list ? fmt::format("is missing; give a list of {}, each {}", entries(key, in), wanted(key))
+         is_list ? fmt::format("is missing; give {}, each {}", list, wanted(key))
                  : fmt::format("is missing; give {}", wanted(key)));
   }
 }
@@ -123,10 +125,10 @@ std::string effective(Input in) {
   return text;
 }
 
-std::string file_text(const std::string& path) {
+std::string file_text(const std::string& path, std::string_view what) {
   const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
   if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
-    refuse("is a folder; give a scene file (.toml)");
+    refuse(fmt::format("is a folder; give {}", what));
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(fmt::format("cannot be opened ({}); check the path", std::generic_category().message(errno)));
@@ -137,11 +139,43 @@ std::string file_text(const std::string& path) {
   return text;
 }
 
-}  // namespace
-
-Input parse(const std::string& text, const std::string& path, const Overrides& overrides) {
+Document with_changes(const std::string& text, const std::string& path, const Overrides& overrides) {
   Document document(text, path);
   for (const std::string& assignment : overrides.set) document.set(assignment);
+  return document;
+}
+
+constexpr std::string_view curve_file_key = "particles.radius.diameter_curve_file";
+
+/// Puts the CSV file's points where the scene's own would stand.
+void take_curve(const Document& document, const std::optional<CurveFile>& file, Radius& radius) {
+  if (radius.diameter_curve_file.empty()) return;
+  if (!radius.diameter_curve.empty()) {
+    fail(document.place(curve_file_key), curve_file_key, "there is a diameter_curve, too; remove one of them");
+  }
+  if (!file) fail(document.place(curve_file_key), curve_file_key, "no file comes with this text; give diameter_curve");
+  radius.diameter_curve = read_curve(*file);
+  if (const std::string words = flaw(radius.diameter_curve); !words.empty()) {
+    throw Error(ExitCode::bad_input, fmt::format("{}: the curve {}", file->path, words));
+  }
+  radius.diameter_curve_file.clear();
+}
+
+}  // namespace
+
+std::optional<CurveFile> named_curve(const std::string& text, const std::string& path, const Overrides& overrides) {
+  const Document document = with_changes(text, path, overrides);
+  const Node* node = document.find(curve_file_key);
+  const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
+  const bool both = document.find("particles.radius.diameter_curve") != nullptr;  // parse() refuses that
+  if (name == nullptr || name->empty() || both) return std::nullopt;
+  const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
+  return CurveFile{file, file_text(file, "a CSV file")};
+}
+
+Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
+            const std::optional<CurveFile>& curve) {
+  const Document document = with_changes(text, path, overrides);
   refuse_later(document);
   refuse_unknown(document.root(), "");
   Input in;
@@ -149,6 +183,7 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   in.name = std::filesystem::path(path).stem().string();
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
+  take_curve(document, curve, in.particles.radius);
   check(in, document);
   in.effective = effective(in);
   return in;
@@ -156,12 +191,17 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
 
 Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides) {
   std::string text;
+  CurveFile curve;
   comm::agree_on(comm, [&] {
-    if (comm.rank() == 0) text = file_text(path);
+    if (comm.rank() != 0) return;
+    text = file_text(path, "a scene file (.toml)");
+    curve = named_curve(text, path, overrides).value_or(CurveFile{});
   });
   text = comm.broadcast(0, text);
+  curve = {comm.broadcast(0, curve.path), comm.broadcast(0, curve.text)};
   Input in;
-  comm::agree_on(comm, [&] { in = parse(text, path, overrides); });
+  comm::agree_on(comm,
+                 [&] { in = parse(text, path, overrides, curve.path.empty() ? std::nullopt : std::optional(curve)); });
   return in;
 }
 

@@ -1,9 +1,11 @@
 /// From a TOML file to a checked Input.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "input/grading.hpp"
 #include "input/input.hpp"
 
 namespace packmpi::input {
@@ -18,9 +20,15 @@ struct Overrides {
 /// single keys and cross-checks that need no rank count are done here (input/checks.cpp).
 [[nodiscard]] Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides);
 
-/// Rank-local part of read(): parse `text` as if it were the file `path`. For tests and fuzzing. Throws
-/// Error(bad_input).
-[[nodiscard]] Input parse(const std::string& text, const std::string& path, const Overrides& overrides);
+/// Rank-local part of read(): parse `text` as if it were the file `path`, and `curve` the CSV file that it names. For
+/// tests and fuzzing. Throws Error(bad_input).
+[[nodiscard]] Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
+                          const std::optional<CurveFile>& curve = {});
+
+/// The CSV file that a scene names (particles.radius.diameter_curve_file), read from the scene's folder; none: it names
+/// none. Local. Throws Error(bad_input).
+[[nodiscard]] std::optional<CurveFile> named_curve(const std::string& text, const std::string& path,
+                                                   const Overrides& overrides);
 
 /// doc/input.md's key tables, from the table the reader uses, as Markdown.
 [[nodiscard]] std::string reference();

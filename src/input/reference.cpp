@@ -29,6 +29,10 @@ std::string value_cell(const Key& key) {
       return "2D: list of 1, 3D: list of 2; each " + wanted(key);
     case Count::spin_axes:
       return "2D: list of 1, 3D: list of 3; each " + wanted(key);
+    case Count::two:
+      return "list of 2; each " + wanted(key);
+    case Count::any:
+      return "list; each " + wanted(key);
     case Count::one:
       break;
   }

@@ -106,10 +106,12 @@ const List& entries_of(const Arrival& arrival) {
   const std::size_t count = entries(arrival.key, arrival.in);
   const auto* list = std::get_if<List>(&arrival.node.value);
   const auto need = [&] {
+    if (count == 0) return fmt::format("a list, each {}", wanted(arrival.key));
+    if (arrival.key.count == Count::two) return fmt::format("a list of 2, each {}", wanted(arrival.key));
     return fmt::format("a list of {} (container.dimension = {}), each {}", count, arrival.in.container.dimension,
                        wanted(arrival.key));
   };
-  if (list == nullptr || list->size() != count) arrival.want(need());
+  if (list == nullptr || (count > 0 && list->size() != count)) arrival.want(need());
   return *list;
 }
 
@@ -123,6 +125,28 @@ void assign(const Arrival& arrival, std::vector<Value>& to) {
   std::vector<Value> values(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) assign(entry(arrival, list, i), values[i]);
   to = std::move(values);
+}
+
+void assign(const Arrival& arrival, std::array<double, 2>& to) {
+  const List& list = entries_of(arrival);
+  for (std::size_t i = 0; i < 2; ++i) assign(entry(arrival, list, i), to.at(i));
+}
+
+/// [diameter, percent]: the key's own number, and a plain one.
+void assign_point(const Arrival& arrival, std::array<double, 2>& to) {
+  const auto* pair = std::get_if<List>(&arrival.node.value);
+  if (pair == nullptr || pair->size() != 2) arrival.want(wanted(arrival.key));
+  assign(entry(arrival, *pair, 0), to[0]);
+  Key percent{.path = arrival.key.path, .slot = {}, .range = {0.0, 100.0}};
+  percent.slot = [&to](Input&) -> Slot { return &to[1]; };
+  assign(Arrival{percent, (*pair)[1], arrival.in, arrival.path + "[1]"}, to[1]);
+}
+
+void assign(const Arrival& arrival, Curve& to) {
+  const List& list = entries_of(arrival);
+  Curve curve(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) assign_point(entry(arrival, list, i), curve[i]);
+  to = std::move(curve);
 }
 
 /// Where the entries of a Vec3 begin: a plane's spin is about z.
@@ -149,6 +173,10 @@ std::string text_of(Whole value) {
 template <class Enum>
 requires std::is_enum_v<Enum> std::string text_of(Enum value) { return toml_string(word(value)); }
 
+std::string text_of(const std::array<double, 2>& pair) {
+  return fmt::format("[{}, {}]", number(pair[0]), number(pair[1]));
+}
+
 template <class Value>
 std::string list_of(const Value* values, std::size_t count) {
   std::string text = "[";
@@ -168,7 +196,7 @@ void store_default(const Key& key, Input& in) {
   std::string text(standard);
   if (standard.starts_with('=')) text = written(*find_key(standard.substr(1)), in);
   const Node value = parse_value(text, "default");
-  if (key.count == Count::one) return store(key, value, in);
+  if (std::holds_alternative<List>(value.value) || key.count == Count::one) return store(key, value, in);
   store(key, Node{"default", List(entries(key, in), value)}, in);
 }
 

@@ -13,7 +13,12 @@ inline constexpr std::array<std::string_view, 0> words_of{};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
 template <>
-inline constexpr std::array<std::string_view, 3> words_of<SizeDistribution>{"equal", "gaussian", "uniform"};
+inline constexpr std::array<std::string_view, 8> words_of<SizeDistribution>{
+    "equal", "gaussian", "uniform", "lognormal", "weibull", "bidisperse", "discrete", "grading"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<Weighting>{"number", "mass"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<Interpolation>{"log", "linear"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<HeightRule>{"surface", "highest"};
 template <>

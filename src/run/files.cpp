@@ -59,7 +59,7 @@ void remove_checkpoints(const Files& files) {
 double expected_particles(const scene::Scene& scene) {
   const double height = scene.box.height() + scene.in.layers.thickness;
   const double solid = (scene.box.dimension == 3 ? densest : 0.91) * scene.box.floor_area() * height;
-  return solid / geometry::volume(scene.box.dimension, scene.sizes.mean());
+  return solid / (geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension));
 }
 
 Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {

@@ -1,5 +1,6 @@
 #include "run/record.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "dynamics/kernel.hpp"
@@ -21,16 +22,12 @@ const char* name_of(input::Decomposition kind) {
   return "";
 }
 
-double asked_sd(const input::Radius& radius) {
-  switch (radius.distribution) {
-    case input::SizeDistribution::equal:
-      return 0.0;
-    case input::SizeDistribution::gaussian:
-      return radius.sd;
-    case input::SizeDistribution::uniform:
-      return (radius.max - radius.min) / std::sqrt(12.0);
-  }
-  return 0.0;
+// Of a gaussian before truncation, as the scene has it; else of the distribution.
+double asked_sd(const scene::Scene& scene) {
+  const input::Radius& radius = scene.in.particles.radius;
+  if (radius.distribution == input::SizeDistribution::gaussian) return radius.sd;
+  const double mean = scene.sizes.curve().moment(1);
+  return std::sqrt(std::max(0.0, scene.sizes.curve().moment(2) - mean * mean));
 }
 
 void audit(const Pile& pile, const observe::Contacts& contacts, output::RunRecord& record) {
@@ -56,7 +53,7 @@ output::RunRecord asked(const comm::Comm& comm, const scene::Scene& scene) {
   record.height_asked = scene.box.height();
   record.fraction_asked = scene.in.layers.fraction;
   record.mean_radius_asked = scene.sizes.mean();
-  record.sd_radius_asked = asked_sd(scene.in.particles.radius);
+  record.sd_radius_asked = asked_sd(scene);
   record.min_radius_asked = scene.sizes.smallest();
   record.max_radius_asked = scene.sizes.largest();
   record.time_step = scene.time_step;

@@ -5,26 +5,13 @@
 #include <numbers>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "base/random.hpp"
 
 namespace packmpi::scene {
 namespace {
 
 constexpr std::uint32_t most_trials = 10000;  // acceptance is 0.3 or more for any sensible window
-
-// Natural logarithm by + - * / alone: libm picks code by CPU and its last bits may differ. Accurate to about 1e-15.
-double logarithm(double x) {
-  int exponent = 0;
-  double mantissa = std::frexp(x, &exponent);
-  if (mantissa < 0.5 * std::numbers::sqrt2) {
-    mantissa *= 2.0;
-    --exponent;
-  }
-  const double s = (mantissa - 1.0) / (mantissa + 1.0);  // |s| < 0.172: ln m = 2 (s + s^3/3 + s^5/5 + ...)
-  double series = 1.0 / 23.0;
-  for (int k = 21; k >= 1; k -= 2) series = series * (s * s) + 1.0 / k;
-  return 2.0 * s * series + exponent * std::numbers::ln2;
-}
 
 // Two numbers in (0, 1] and [0, 1).
 std::pair<double, double> two_uniforms(const random::Name& name) {
@@ -38,7 +25,7 @@ bool normal_by_ratio(double u, double x) {
   const double squared = x * x;
   if (squared <= 5.0 - 5.136101666675097 * u) return true;   // 4 exp(1/4)
   if (squared >= 1.036961042583566 / u + 1.4) return false;  // 4 exp(-1.35)
-  return squared <= -4.0 * logarithm(u);
+  return squared <= -4.0 * elementary::logarithm(u);
 }
 
 // One trial for a normal deviate in [low, high]; true if `x` is one.
@@ -51,7 +38,7 @@ bool truncated_trial(const random::Name& name, double low, double high, double& 
   // A narrow or one-sided window would reject nearly all of these: propose inside it instead.
   x = low + v * (high - low);
   const double peak = std::clamp(0.0, low, high);
-  return logarithm(u) <= 0.5 * (peak * peak - x * x);
+  return elementary::logarithm(u) <= 0.5 * (peak * peak - x * x);
 }
 
 double truncated_normal(const input::Radius& radius, random::Name name) {
@@ -69,19 +56,16 @@ double truncated_normal(const input::Radius& radius, random::Name name) {
 
 double Sizes::draw(std::uint32_t layer, std::uint64_t index) const {
   const random::Name name{seed_, random::Purpose::radius, layer, index, 0};
-  switch (radius_.distribution) {
-    case input::SizeDistribution::equal:
-      return radius_.value;
-    case input::SizeDistribution::gaussian:
-      return truncated_normal(radius_, name);
-    case input::SizeDistribution::uniform:
-      return std::min(radius_.min + two_uniforms(name).second * (radius_.max - radius_.min), radius_.max);
-  }
-  return radius_.value;
+  if (equal()) return radius_.value;
+  if (bounded() && radius_.distribution == input::SizeDistribution::gaussian) return truncated_normal(radius_, name);
+  if (bounded()) return std::min(radius_.min + two_uniforms(name).second * (radius_.max - radius_.min), radius_.max);
+  const auto u = random::uniforms(name);
+  return curve_->draw(u[0], u[1]);
 }
 
 double Sizes::mean() const noexcept {
   if (equal()) return radius_.value;
+  if (!bounded()) return curve_->moment(1);
   if (radius_.distribution == input::SizeDistribution::uniform) return 0.5 * (radius_.min + radius_.max);
   if (!(radius_.sd > 0.0)) return std::clamp(radius_.mean, radius_.min, radius_.max);
   const double low = (radius_.min - radius_.mean) / radius_.sd;

@@ -115,6 +115,33 @@ TEST(BadInput, FolderAndMissingFile) {
             nowhere + ": cannot be opened (No such file or directory); check the path");
 }
 
+TEST(BadInput, GradingFiles) {
+  const auto of = [](const std::string& text) { return complaint([&] { (void)read_curve({"g.csv", text}); }); };
+  const std::string head = "diameter_mm,percent_passing\n";
+  EXPECT_EQ(of(""), "g.csv:0: is empty; the first line must be \"diameter_mm,percent_passing\"");
+  EXPECT_EQ(of("# my sand\n1,2\n"),
+            "g.csv:2: is \"1,2\"; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)");
+  EXPECT_EQ(
+      of("diameter_kg,percent_passing\n"),
+      "g.csv:1: is \"diameter_kg,percent_passing\"; the first line must be \"diameter_mm,percent_passing\" (or _m, "
+      "_cm, _um)");
+  EXPECT_EQ(of(head + "1;2\n"), "g.csv:2: is \"1;2\"; give two numbers with a comma");
+  EXPECT_EQ(of(head + "1,2\n\n4,x\n"), "g.csv:4: \"x\" is not a number; write 4.75,63.2 (a point, no units)");
+  EXPECT_EQ(of(head + "1,2,3\n"), "g.csv:2: \"2,3\" is not a number; write 4.75,63.2 (a point, no units)");
+  EXPECT_EQ(of(head + "-1,2\n"), "g.csv:2: a diameter must be above 0");
+  EXPECT_EQ(of(head + "1,200\n"), "g.csv:2: 200 percent; give 0 to 100");
+}
+
+TEST(BadInput, AGradingFileThatIsNotThere) {
+  const comm::Comm world(MPI_COMM_WORLD);
+  const std::string scene = (fs::path(PACKMPI_SOURCE_DIR) / "input/quickstart.toml").string();
+  const std::string set =
+      "particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = \"no.csv\" }";
+  EXPECT_EQ(complaint([&] { (void)read(world, scene, {{set}}); }),
+            (fs::path(PACKMPI_SOURCE_DIR) / "input/no.csv").string() +
+                ": cannot be opened (No such file or directory); check the path");
+}
+
 TEST(BadInput, Overrides) {
   EXPECT_EQ(complaint_of_set({"seed"}), "--set seed: not an assignment; write --set key.path=value");
   EXPECT_EQ(complaint_of_set({"=3"}), "--set =3: not an assignment; write --set key.path=value");

@@ -2,6 +2,8 @@
 // point.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -111,7 +113,7 @@ TEST(GoodInput, EveryGeneralKeyArrives) {
   EXPECT_EQ(radius.sd, 0.001);
   EXPECT_EQ(radius.min, 0.007);
   EXPECT_EQ(radius.max, 0.013);
-  EXPECT_EQ(radius.weighting, "number");
+  EXPECT_EQ(radius.weighting, Weighting::number);
   EXPECT_EQ(in.layers.thickness, 0.2);
   EXPECT_EQ(in.layers.fraction, 0.4);
   EXPECT_EQ(in.layers.duration, 0.5);
@@ -195,6 +197,65 @@ TEST(GoodInput, UniformRadii) {
   EXPECT_EQ(in.particles.radius.max, 0.02);
 }
 
+/// The radii of a scene with this radius table.
+Radius radius_of(const std::string& table, const std::optional<CurveFile>& curve = {}) {
+  const Input in = parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, curve);
+  EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective) << table;
+  return in.particles.radius;
+}
+
+TEST(GoodInput, EveryKeyOfEverySizeDistributionArrives) {
+  const Radius lognormal = radius_of(
+      R"(distribution = "lognormal", median = "1 cm", log_sd = 0.4, min = "4 mm", max = "2 cm", weighting = "mass")");
+  EXPECT_EQ(lognormal.median, 0.01);
+  EXPECT_EQ(lognormal.log_sd, 0.4);
+  EXPECT_EQ(lognormal.weighting, Weighting::mass);
+  const Radius weibull =
+      radius_of(R"(distribution = "weibull", scale = 0.01, shape = 3, min = 0.004, max = 0.02, weighting = "mass")");
+  EXPECT_EQ(weibull.scale, 0.01);
+  EXPECT_EQ(weibull.shape, 3.0);
+  const Radius two = radius_of(
+      R"(distribution = "bidisperse", small = "2 mm", large = "2 cm", large_share = "70 %", weighting = "mass")");
+  EXPECT_EQ(two.small, 0.002);
+  EXPECT_EQ(two.large, 0.02);
+  EXPECT_EQ(two.large_share, 0.7);
+  const Radius classes = radius_of(
+      R"(distribution = "discrete", radii = ["2 mm", 0.004, "1 cm"], shares = [1, 2.5, 3], weighting = "number")");
+  EXPECT_EQ(classes.radii, (std::vector<double>{0.002, 0.004, 0.01}));
+  EXPECT_EQ(classes.shares, (std::vector<double>{1.0, 2.5, 3.0}));
+  const Radius grading = radius_of(
+      R"(distribution = "grading", diameter_curve = [["2 mm", 0], [0.01, 40.5], ["4 cm", 100]], weighting = "mass", )"
+      R"(interpolation = "linear", keep_percent = [5, 100])");
+  EXPECT_EQ(grading.diameter_curve, (Curve{{0.002, 0.0}, {0.01, 40.5}, {0.04, 100.0}}));
+  EXPECT_EQ(grading.interpolation, Interpolation::linear);
+  EXPECT_EQ(grading.keep_percent, (std::array<double, 2>{5.0, 100.0}));
+}
+
+TEST(GoodInput, AGradingFileIsTheSameAsItsPoints) {
+  const CurveFile file{"g.csv", "# sieves\r\ndiameter_mm, percent_passing\r\n2 , 0\r\n\r\n10,40.5\r\n40,100"};
+  const Radius radius =
+      radius_of(R"(distribution = "grading", diameter_curve_file = "g.csv", weighting = "mass")", file);
+  EXPECT_EQ(radius.diameter_curve, (Curve{{0.002, 0.0}, {0.01, 40.5}, {0.04, 100.0}}));
+  EXPECT_EQ(radius.diameter_curve_file, "") << "the effective input needs no file";
+  EXPECT_EQ(radius.interpolation, Interpolation::log);
+}
+
+TEST(GoodInput, KeptPartOfACurve) {
+  Radius radius;
+  radius.diameter_curve = {{0.001, 0.0}, {0.01, 50.0}, {0.1, 100.0}};
+  radius.keep_percent = {25.0, 75.0};
+  const Curve kept = kept_curve(radius);
+  ASSERT_EQ(kept.size(), 3U);
+  EXPECT_NEAR(kept[0][0], 0.001 * std::sqrt(10.0), 1e-17);
+  EXPECT_EQ(kept[1], (std::array<double, 2>{0.01, 50.0}));
+  EXPECT_NEAR(kept[2][0], 0.01 * std::sqrt(10.0), 1e-16);
+  radius.interpolation = Interpolation::linear;
+  radius.keep_percent = {0.0, 80.0};
+  EXPECT_EQ(kept_curve(radius), (Curve{{0.001, 0.0}, {0.01, 62.5}, {0.01 + 0.6 * (0.1 - 0.01), 100.0}}));
+  radius.keep_percent = {50.0, 100.0};
+  EXPECT_EQ(kept_curve(radius), (Curve{{0.01, 0.0}, {0.1, 100.0}}));
+}
+
 TEST(GoodInput, OverridesWin) {
   const Input in = parse(least, "a.toml",
                          {{"seed=7", "layers.thickness=120 mm", "layers.thickness=0.15", " contact . wall = material ",
@@ -213,7 +274,7 @@ TEST(GoodInput, EffectiveInputIsAFixedPointAndHidesNothing) {
   }
   const std::string effective = parse(full, "a.toml", {}).effective;
   for (const Key& key : keys()) {
-    if (key.path == "particles.radius.value") continue;
+    if (Input in = parse(full, "a.toml", {}); !key.applies(in)) continue;  // of another size distribution
     std::string line(key.path.substr(key.path.rfind('.') + 1));
     line.insert(0, 1, '\n').append(" = ");
     EXPECT_NE(("\n" + effective).find(line), std::string::npos) << key.path;

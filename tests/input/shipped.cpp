@@ -27,7 +27,8 @@ TEST(Scenes, AreAllGood) {
   for (const auto& entry : fs::directory_iterator(fs::path(PACKMPI_SOURCE_DIR) / "input")) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
-    const Input in = parse(text_of(entry.path()), entry.path().string(), {});
+    const std::string text = text_of(entry.path()), path = entry.path().string();
+    const Input in = parse(text, path, {}, named_curve(text, path, {}));
     EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << entry.path();
   }
   EXPECT_GE(count, 8);

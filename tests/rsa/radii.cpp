@@ -78,6 +78,174 @@ TEST(Radii, Uniform) {
                       [](double x) { return (x - 0.01) / 0.02; });
 }
 
+using input::SizeDistribution;
+using input::Weighting;
+
+// F(r) by number, given a distribution function M by mass, by fine quadrature: dF ~ dM / r^3.
+std::function<double(double)> by_number(const std::function<double(double)>& mass, double min, double max) {
+  constexpr int steps = 200000;
+  std::vector<double> below{0.0};
+  const auto at = [=](int k) { return min * std::pow(max / min, static_cast<double>(k) / steps); };
+  for (int k = 0; k < steps; ++k) {
+    const double r = std::sqrt(at(k) * at(k + 1));
+    below.push_back(below.back() + (mass(at(k + 1)) - mass(at(k))) / (r * r * r));
+  }
+  return [=](double r) {
+    const double k = std::clamp(std::log(r / min) / std::log(max / min), 0.0, 1.0) * steps;
+    return below[static_cast<std::size_t>(k)] / below.back();
+  };
+}
+
+// Draws against F by number; the curve's passing shares and quantiles against F and M.
+void expect_curve(const input::Radius& radius, const std::function<double(double)>& given) {
+  const scene::Sizes sizes(radius, 42);
+  const double min = sizes.smallest();
+  const double max = sizes.largest();
+  const bool mass = radius.weighting == Weighting::mass;
+  const auto number = mass ? by_number(given, min, max) : given;
+  std::vector<double> r(draws);
+  double sum = 0.0;
+  for (int k = 0; k < draws; ++k) {
+    const double x = sizes.draw(3, static_cast<std::uint64_t>(k));
+    ASSERT_GE(x, min);
+    ASSERT_LE(x, max);
+    r[static_cast<std::size_t>(k)] = x;
+    sum += x;
+  }
+  std::ranges::sort(r);
+  double distance = 0.0;
+  for (int k = 0; k < draws; ++k) {
+    distance = std::max(distance, std::abs((k + 0.5) / draws - number(r[static_cast<std::size_t>(k)])));
+  }
+  EXPECT_LT(distance, 1.95 / std::sqrt(draws) + 2e-5);
+  const double mean = sizes.curve().moment(1);
+  const double sd = std::sqrt(sizes.curve().moment(2) - mean * mean);
+  EXPECT_NEAR(sum / draws, mean, 4.0 * sd / std::sqrt(draws));
+  for (const double share : {0.01, 0.1, 0.3, 0.5, 0.6, 0.9, 0.999}) {
+    const double q = sizes.curve().quantile(radius.weighting, share);
+    EXPECT_NEAR(given(q), share, 2e-5) << "at " << share;
+    EXPECT_NEAR(sizes.curve().passing(radius.weighting, q), share, 1e-12);
+    const double by_count = sizes.curve().quantile(Weighting::number, share);
+    EXPECT_NEAR(number(by_count), share, 5e-5);
+  }
+  EXPECT_EQ(sizes.curve().passing(Weighting::mass, 0.99 * min), 0.0);
+  EXPECT_EQ(sizes.curve().passing(Weighting::mass, max), 1.0);
+}
+
+input::Radius truncated_radius(SizeDistribution kind, Weighting weighting, double min, double max) {
+  input::Radius radius = uniform_radius(min, max);
+  radius.distribution = kind;
+  radius.weighting = weighting;
+  return radius;
+}
+
+std::function<double(double)> cut(const std::function<double(double)>& whole, double a, double b) {
+  return [=](double r) { return (whole(r) - whole(a)) / (whole(b) - whole(a)); };
+}
+
+TEST(Radii, Lognormal) {
+  for (const Weighting weighting : {Weighting::number, Weighting::mass}) {
+    input::Radius radius = truncated_radius(SizeDistribution::lognormal, weighting, 0.004, 0.05);
+    radius.median = 0.015;
+    radius.log_sd = 0.5;
+    expect_curve(radius, cut([](double r) { return phi(std::log(r / 0.015) / 0.5); }, 0.004, 0.05));
+  }
+}
+
+TEST(Radii, Weibull) {
+  for (const Weighting weighting : {Weighting::number, Weighting::mass}) {
+    for (const double shape : {0.8, 2.5}) {
+      input::Radius radius = truncated_radius(SizeDistribution::weibull, weighting, 0.002, 0.04);
+      radius.scale = 0.015;
+      radius.shape = shape;
+      expect_curve(radius, cut([shape](double r) { return 1.0 - std::exp(-std::pow(r / 0.015, shape)); }, 0.002, 0.04));
+    }
+  }
+}
+
+TEST(Radii, GaussianAndUniformByMass) {
+  input::Radius radius = truncated_radius(SizeDistribution::gaussian, Weighting::mass, 0.01, 0.03);
+  radius.mean = 0.02;
+  radius.sd = 0.004;
+  expect_curve(radius, cut([](double r) { return phi((r - 0.02) / 0.004); }, 0.01, 0.03));
+  expect_curve(truncated_radius(SizeDistribution::uniform, Weighting::mass, 0.001, 0.02),
+               [](double r) { return (r - 0.001) / 0.019; });
+}
+
+// Between the points the share is linear in the diameter or in its logarithm; the middle piece is a gap.
+TEST(Radii, Grading) {
+  const std::vector<std::pair<double, double>> points{{0.001, 0.0}, {0.004, 0.3}, {0.008, 0.3}, {0.02, 1.0}};  // radii
+  for (const Weighting weighting : {Weighting::number, Weighting::mass}) {
+    for (const auto interpolation : {input::Interpolation::linear, input::Interpolation::log}) {
+      input::Radius radius;
+      radius.distribution = SizeDistribution::grading;
+      radius.weighting = weighting;
+      radius.interpolation = interpolation;
+      for (const auto& [r, share] : points) radius.diameter_curve.push_back({2.0 * r, 100.0 * share});
+      expect_curve(radius, [=](double r) {
+        std::size_t k = 1;
+        while (k + 1 < points.size() && points[k].first < r) ++k;
+        const auto [a, p] = points[k - 1];
+        const auto [b, q] = points[k];
+        const bool log = interpolation == input::Interpolation::log;
+        return p + (q - p) * (log ? std::log(r / a) / std::log(b / a) : (r - a) / (b - a));
+      });
+    }
+  }
+}
+
+TEST(Radii, ClassesHaveTheirShares) {
+  input::Radius radius;
+  radius.distribution = SizeDistribution::discrete;
+  radius.weighting = Weighting::mass;
+  radius.radii = {0.001, 0.002, 0.004};
+  radius.shares = {1.0, 2.0, 1.0};
+  const scene::Sizes sizes(radius, 42);
+  std::array<int, 3> count{};
+  for (int k = 0; k < draws; ++k) {
+    const double r = sizes.draw(0, static_cast<std::uint64_t>(k));
+    ++count.at(r == 0.001 ? 0 : r == 0.002 ? 1 : 2);
+  }
+  const std::array<double, 3> weights{1.0, 2.0 / 8.0, 1.0 / 64.0};  // mass / r^3
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double share = weights.at(k) / (weights[0] + weights[1] + weights[2]);
+    EXPECT_NEAR(count.at(k), draws * share, 4.0 * std::sqrt(draws * share * (1.0 - share)));
+  }
+  EXPECT_EQ(sizes.curve().quantile(Weighting::mass, 0.5), 0.002);
+  EXPECT_EQ(sizes.curve().quantile(Weighting::number, 0.5), 0.001);
+  EXPECT_NEAR(sizes.curve().passing(Weighting::mass, 0.002), 0.75, 1e-15);
+  EXPECT_NEAR(sizes.curve().passing(Weighting::mass, 0.00199), 0.25, 1e-15);
+}
+
+TEST(Radii, BidisperseIsTwoClasses) {
+  input::Radius radius;
+  radius.distribution = SizeDistribution::bidisperse;
+  radius.weighting = Weighting::mass;
+  radius.small = 0.001;
+  radius.large = 0.02;
+  radius.large_share = 0.7;
+  const scene::Sizes sizes(radius, 1);
+  EXPECT_EQ(sizes.smallest(), 0.001);
+  EXPECT_EQ(sizes.largest(), 0.02);
+  EXPECT_NEAR(sizes.curve().passing(Weighting::mass, 0.01), 0.3, 1e-15);
+  EXPECT_NEAR(sizes.curve().passing(Weighting::number, 0.01), 0.3 / (0.3 + 0.7 / 8000.0), 1e-15);
+}
+
+// Elementary functions of our own: the last bit of these radii must be the same on every machine.
+TEST(Radii, BitsAreFixed) {
+  input::Radius radius = truncated_radius(SizeDistribution::lognormal, Weighting::mass, 0.004, 0.05);
+  radius.median = 0.015;
+  radius.log_sd = 0.5;
+  EXPECT_EQ(scene::Sizes(radius, 42).draw(3, 7), 0x1.11ae3f53a90b9p-7);
+  radius = {};
+  radius.distribution = SizeDistribution::grading;
+  radius.weighting = Weighting::mass;
+  radius.diameter_curve = {{0.002, 0.0}, {0.01, 40.0}, {0.04, 100.0}};
+  EXPECT_EQ(scene::Sizes(radius, 42).draw(3, 7), 0x1.30819a44c524p-9);
+  radius.weighting = Weighting::number;
+  EXPECT_EQ(scene::Sizes(radius, 42).draw(3, 7), 0x1.286aa9da36a6fp-6);
+}
+
 TEST(Radii, EqualAndDegenerate) {
   EXPECT_EQ(scene::Sizes(equal_radius(0.013), 7).draw(2, 5), 0.013);
   EXPECT_EQ(scene::Sizes(gaussian_radius(0.02, 0.0, 0.01, 0.03), 7).draw(2, 5), 0.02);

@@ -37,7 +37,7 @@ inline input::Input graded_input(int dimension, double length, double r, double 
   in.particles.radius.distribution = input::SizeDistribution::uniform;
   in.particles.radius.min = r;
   in.particles.radius.max = ratio * r;
-  in.particles.radius.weighting = "number";
+  in.particles.radius.weighting = input::Weighting::number;
   return in;
 }
 
