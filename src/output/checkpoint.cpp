@@ -104,7 +104,7 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
     write_bytes(file, "/effective_input", state.effective_input);
     for (const h5::Column& column : plan) h5::create_dataset(file, column);
   };
-  write_whole_file(comm, path, plan, static_cast<std::int64_t>(text.size() + state.effective_input.size()), frame);
+  write_whole_file(comm, path, plan, frame);
 }
 
 }  // namespace packmpi::output

@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include "base/error.hpp"
 
@@ -26,8 +28,9 @@ std::int64_t free_bytes(const std::string& path) {
   return free > INT64_MAX ? INT64_MAX : static_cast<std::int64_t>(free);
 }
 
-void reserve_open(const Descriptor& file, const std::string& path, std::int64_t bytes, int mode) {
-  if (bytes <= 0 || fallocate(file.get(), mode, 0, bytes) == 0) return;
+/// `bytes` of the file on the disk to be, and its size, so that limits on it are met too.
+void reserve_open(const Descriptor& file, const std::string& path, std::int64_t bytes) {
+  if (bytes <= 0 || fallocate(file.get(), 0, 0, bytes) == 0) return;
   const int number = errno;
   const bool unsupported = number == EOPNOTSUPP || number == ENOSYS || number == EINVAL;
   if (unsupported && free_bytes(path) >= bytes) return;
@@ -56,6 +59,20 @@ void Descriptor::close() {
   if (closed != 0) fail(path_, "close", errno);
 }
 
+void Descriptor::write_at(std::span<const std::byte> bytes, std::int64_t at) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail(path_, "write", written == 0 ? ENOSPC : errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    at += written;
+  }
+}
+
+void Descriptor::sync() {
+  if (fsync(fd_) != 0) fail(path_, "fsync", errno);
+}
+
 std::string folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
@@ -64,7 +81,7 @@ std::string folder_of(const std::string& path) {
 void reserve(const std::string& path, std::int64_t bytes) {
   Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
   try {
-    reserve_open(file, path, bytes, 0);  // with the size, so that limits on it are met too
+    reserve_open(file, path, bytes);
   } catch (const Error&) {
     discard(path);
     throw;
@@ -72,22 +89,31 @@ void reserve(const std::string& path, std::int64_t bytes) {
   file.close();
 }
 
-void reserve_existing(const std::string& path, std::int64_t bytes) {
-  Descriptor file(path, O_WRONLY);
-  reserve_open(file, path, bytes, FALLOC_FL_KEEP_SIZE);
-  file.close();
+MemoryFile::MemoryFile(const std::string& for_what) : fd_(memfd_create("packmpi", MFD_CLOEXEC)) {
+  if (fd_ < 0) fail(for_what, "a file in memory", errno);
 }
 
-std::string diagnose(const std::string& path) {
-  constexpr std::int64_t nearly_nothing = 1 << 16;
-  if (free_bytes(path) < nearly_nothing) return reason(ENOSPC);
-  if (access(folder_of(path).c_str(), W_OK) != 0) return reason(errno);
-  return {};
+MemoryFile::~MemoryFile() { ::close(fd_); }
+
+bool MemoryFile::stand_in_for(int fd) const noexcept { return dup3(fd_, fd, O_CLOEXEC) >= 0; }
+
+void MemoryFile::copy_to(Descriptor& disk) const {
+  const off_t size = lseek(fd_, 0, SEEK_END);
+  reserve_open(disk, disk.path(), size);
+  if (ftruncate(disk.get(), size) != 0) fail(disk.path(), "truncate", errno);
+  std::vector<std::byte> bytes;
+  for (off_t begin = lseek(fd_, 0, SEEK_DATA); begin >= 0;) {  // below 0: no more data
+    const off_t end = lseek(fd_, begin, SEEK_HOLE);
+    bytes.resize(static_cast<std::size_t>(end - begin));
+    if (pread(fd_, bytes.data(), bytes.size(), begin) != end - begin) fail(disk.path(), "read from memory", EIO);
+    disk.write_at(bytes, begin);
+    begin = lseek(fd_, end, SEEK_DATA);
+  }
 }
 
 void commit(const std::string& temporary, const std::string& path) {
   Descriptor file(temporary, O_WRONLY);
-  if (fsync(file.get()) != 0) fail(path, "fsync", errno);
+  file.sync();
   file.close();
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "rename", errno);
   Descriptor folder(folder_of(path), O_RDONLY | O_DIRECTORY);
@@ -100,12 +126,7 @@ void write_whole(const std::string& path, std::string_view text) {
   const std::string temporary = path + ".tmp";
   try {
     Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-    while (!text.empty()) {
-      const ssize_t written = ::write(file.get(), text.data(), text.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) fail(path, "write", written == 0 ? ENOSPC : errno);
-      text.remove_prefix(static_cast<std::size_t>(written));
-    }
+    file.write_at(std::as_bytes(std::span(text)), 0);
     file.close();
     commit(temporary, path);
   } catch (const Error&) {

@@ -1,7 +1,9 @@
 /// Files that appear whole or not at all, with the system's own words when they cannot. Rank-local; private to this
 /// room.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,6 +17,9 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   [[nodiscard]] int get() const noexcept { return fd_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  void write_at(std::span<const std::byte> bytes, std::int64_t at);  ///< all of them; throws Error(io_failure)
+  void sync();                                                       ///< fsync; throws Error(io_failure)
   /// Close now; a delayed write error is thrown as Error(io_failure).
   void close();
 
@@ -29,12 +34,23 @@ class Descriptor {
 /// Make PATH a file without contents of which `bytes` are already on the disk (where the file system can promise that;
 /// elsewhere the free space is compared), so that a full disk is met here and not in the middle of a collective write.
 void reserve(const std::string& path, std::int64_t bytes);
-/// The same for a file that exists; its contents and size stay.
-void reserve_existing(const std::string& path, std::int64_t bytes);
 
-/// What keeps bytes from being written to PATH now, as far as the system tells afterwards: the reason for an I/O
-/// library that lost the errno. Empty if nothing is found.
-[[nodiscard]] std::string diagnose(const std::string& path);
+/// A file in memory. Only what was written takes any.
+class MemoryFile {
+ public:
+  /// Throws Error(io_failure), as writing `for_what` would.
+  explicit MemoryFile(const std::string& for_what);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  /// The open file `fd` of this process is this one from now on. False: it cannot be.
+  [[nodiscard]] bool stand_in_for(int fd) const noexcept;
+  /// Makes `disk` as long as this file, its space on the disk, and writes to it what was written here.
+  void copy_to(Descriptor& disk) const;
+
+ private:
+  int fd_;
+};
 
 /// TEMPORARY becomes PATH, on the disk to stay: fsync, rename, fsync of the folder.
 void commit(const std::string& temporary, const std::string& path);

@@ -67,8 +67,9 @@ Handle make_dataset(hid_t file, const std::string& path, hid_t type, const std::
 
 void write_all(hid_t file, const std::string& path, const std::string& unit, hid_t type, std::size_t count,
                const void* values) {
-  const Handle dataset = make_dataset(file, path, type, {count}, unit);
+  Handle dataset = make_dataset(file, path, type, {count}, unit);
   if (count > 0) check(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write " + path);
+  dataset.close("close " + path);  // small ones are written only now
 }
 
 }  // namespace
@@ -113,12 +114,17 @@ Handle string_type(std::size_t length) {
   return type;
 }
 
-Handle create_file(const std::string& path) {
+Handle create_file(const std::string& path, const MemoryFile& memory) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make access properties");
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110), "choose a version");
   const Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make file properties");
   check(H5Pset_obj_track_times(create.get(), false), "leave out the times");  // of the root group
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()), H5Fclose, "create the file"};
+  check(H5Pset_fapl_sec2(access.get()), "choose a driver");
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create.get(), access.get()), H5Fclose, "create the file");
+  int* descriptor = nullptr;  // nothing has been written to it yet
+  check(H5Fget_vfd_handle(file.get(), access.get(), reinterpret_cast<void**>(&descriptor)), "name its descriptor");
+  if (!memory.stand_in_for(*descriptor)) fail("go on in memory");
+  return file;
 }
 
 Handle create_group(hid_t file, const std::string& path) {
@@ -174,33 +180,14 @@ void create_dataset(hid_t file, const Column& column) {
   (void)make_dataset(file, column.path, column.type.get(), sizes, column.unit);
 }
 
-Handle open_together(const comm::Comm& comm, const std::string& path) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make access properties");
-  check(H5Pset_fapl_mpio(access.get(), comm.handle(), MPI_INFO_NULL), "choose MPI-IO");
-  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110), "choose a version");
-  check(H5Pset_all_coll_metadata_ops(access.get(), true), "choose collective metadata");
-  return {H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose, "open the file on all ranks"};
-}
+std::size_t row_bytes(const Column& column) { return column.width * H5Tget_size(column.type.get()); }
 
-void write_rows(hid_t dataset, const Column& column) {
-  if (column.slab.total == 0) return;  // has no place in the file
-  const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "make transfer properties");
-  check(H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE), "choose collective writing");
-  const Handle there(H5Dget_space(dataset), H5Sclose, "ask for a data space");
-  const Handle here = space_of({std::max<hsize_t>(column.slab.count * column.width, 1)});
-  std::vector<std::byte> bytes = column.bytes();
-  if (column.slab.count > 0) {
-    const std::array<hsize_t, 2> start{column.slab.offset, 0};
-    const std::array<hsize_t, 2> count{column.slab.count, column.width};
-    check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-          "select rows");
-  } else {
-    check(H5Sselect_none(there.get()), "select nothing");
-    check(H5Sselect_none(here.get()), "select nothing");
-    bytes.resize(1);  // HDF5 wants an address
-  }
-  check(H5Dwrite(dataset, column.type.get(), here.get(), there.get(), transfer.get(), bytes.data()),
-        "write " + column.path);
+std::int64_t place_of(hid_t file, const Column& column) {
+  if (column.slab.total == 0) return 0;  // has no place in the file
+  const Handle dataset(H5Dopen2(file, column.path.c_str(), H5P_DEFAULT), H5Dclose, "open " + column.path);
+  const haddr_t place = H5Dget_offset(dataset.get());
+  if (place == HADDR_UNDEF) fail("place " + column.path);
+  return static_cast<std::int64_t>(place);
 }
 
 }  // namespace packmpi::output::h5

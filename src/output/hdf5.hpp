@@ -1,8 +1,4 @@
-/// HDF5 behind owned handles, every call checked. Private to this room.
-///
-/// Parallel HDF5 1.10 waits for ever in H5Fflush or H5Fclose if a write of headers fails on one rank (tried). So rank 0
-/// makes the file with all its headers by the serial driver; then all ranks open it and write rows, and nothing else:
-/// such a write fails without a wait, the ranks agree about it, and closing has nothing to write.
+/// HDF5 behind owned handles, every call checked. Private to this room. All of it is rank-local.
 #pragma once
 #include <hdf5.h>
 
@@ -17,6 +13,7 @@
 
 #include "comm/comm.hpp"
 #include "output/fields.hpp"
+#include "output/files.hpp"
 
 namespace packmpi::output::h5 {
 
@@ -87,8 +84,9 @@ inline constexpr std::size_t row_width<T, std::array<T, n>> = n;
 /// A fixed-length UTF-8 string type that holds `length` bytes without an end mark.
 [[nodiscard]] Handle string_type(std::size_t length);
 
-/// A new file, by the serial driver. Rank-local, as is all that follows up to Slab.
-[[nodiscard]] Handle create_file(const std::string& path);
+/// A new file named `path`, all of which is written to `memory` instead: where nothing can fail for the disk's sake, so
+/// that it can always be closed. (A file that cannot ends the program at its exit: HDF5 1.10 closes it once more.)
+[[nodiscard]] Handle create_file(const std::string& path, const MemoryFile& memory);
 [[nodiscard]] Handle create_group(hid_t file, const std::string& path);
 void set_attribute(hid_t object, const char* name, const Value& value);
 /// Words as a fixed-length ASCII string without padding, as VTK wants its own; not empty.
@@ -117,13 +115,13 @@ struct Column {
   std::function<std::vector<std::byte>()> bytes;
 };
 
-/// Creates the dataset with its space in the file: contiguous, not filled, no rows written. Rank-local.
+/// Creates the dataset with its space in the file: contiguous, not filled, no rows written.
 void create_dataset(hid_t file, const Column& column);
 
-/// A file that is there, on all ranks. Collective.
-[[nodiscard]] Handle open_together(const comm::Comm& comm, const std::string& path);
-/// Writes this rank's rows; a rank without rows calls it too. Collective.
-void write_rows(hid_t dataset, const Column& column);
+/// Bytes of a row in the file.
+[[nodiscard]] std::size_t row_bytes(const Column& column);
+/// Where its rows begin in the file [bytes]; 0 if it has none.
+[[nodiscard]] std::int64_t place_of(hid_t file, const Column& column);
 
 /// A column whose rows are get(rows[k]): a T or an array of T. `rows` must live until the column is written.
 template <class T, class Row, class Get>

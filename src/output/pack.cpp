@@ -11,8 +11,7 @@ void write_pack(const comm::Comm& comm, const std::string& path, const PackParts
   const h5::Quiet quiet;
   const PackBlock block = make_block(comm, parts);
   const std::vector<h5::Column> plan = plan_columns(block);
-  write_whole_file(comm, path, plan, static_cast<std::int64_t>(record.effective_input.size()),
-                   [&](hid_t file) { write_frame(file, block, plan, record); });
+  write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, block, plan, record); });
 }
 
 }  // namespace packmpi::output

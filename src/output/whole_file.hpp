@@ -1,6 +1,5 @@
 /// An HDF5 file that all ranks write and that appears whole or not at all. Private to this room.
 #pragma once
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,10 +10,14 @@
 namespace packmpi::output {
 
 /// Collective. Writes PATH: to PATH.tmp, rows by all ranks, fsync'ed, renamed, the folder fsync'ed. `frame` makes all
-/// of the file but the rows of `plan` (their datasets included) and runs on rank 0; `frame_bytes` is about what it
-/// needs on the disk. Throws Error(io_failure) on every rank, with the system's reason; then PATH is untouched and
+/// of the file but the rows of `plan` (their datasets included) and runs on rank 0. Throws Error(io_failure) on every
+/// rank, with the system's reason; then PATH is untouched (or, if it was the last fsync that failed, the new file) and
 /// PATH.tmp is gone.
+///
+/// HDF5 touches no disk in it: rank 0 lets it write the headers to memory and copies them, and since all datasets are
+/// contiguous every rank knows where its rows belong. Written by parallel HDF5 1.10 over MPI-IO instead, one failing
+/// write can make H5Fclose wait for ever, or fail in a way that ends the program at its exit (both tried).
 void write_whole_file(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
-                      std::int64_t frame_bytes, const std::function<void(hid_t file)>& frame);
+                      const std::function<void(hid_t file)>& frame);
 
 }  // namespace packmpi::output

@@ -15,8 +15,9 @@ namespace packmpi::testing {
 /// A new folder on rank 0, removed with all that is in it at the end. Collective.
 class Folder {
  public:
-  explicit Folder(const comm::Comm& comm) : comm_(&comm) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "packmpi-test-XXXXXX").string();
+  explicit Folder(const comm::Comm& comm, const std::filesystem::path& parent = std::filesystem::temp_directory_path())
+      : comm_(&comm) {
+    std::string pattern = (parent / "packmpi-test-XXXXXX").string();
     if (comm.rank() == 0 && mkdtemp(pattern.data()) == nullptr) std::abort();
     path_ = comm.broadcast(0, pattern);
   }
