@@ -1,147 +1,206 @@
 #!/usr/bin/python3
-"""packmpi and LAMMPS on the same scenes, in turn, in the same minutes, on one core each.
+"""packmpi, LAMMPS and LIGGGHTS on the same scenes, in turn, in the same minutes, on the same core.
 
-  scripts/compare.py [--runs 3] [--beds 107000 964000] [--brick] [--doc doc/performance.md]
+  scripts/compare.sh [--runs 3] [--seeds 2] [--beds 107000 964000 | --no-beds] [--no-brick] [--quick] [--core 0]
 
-Beds: a settled bed of the paper's spheres (rotation on, time step 1e-4 s), written by tests/bench/bed_bench.cpp; both codes
-advance the same particles; particle-steps a second, everything in. Brick (--brick): example 5.3 from nothing to the last
-layer, wall time and the density that came out. Needs scripts/build.sh all and the Debian package lammps
-(scripts/setup.sh --peers). The tables replace the part of the document between its "compare" markers.
+Beds: settled beds of the paper's spheres between walls (rotation on, time step 1e-4 s), written by
+tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
+of the mean); particle-steps a second, everything in. Brick: example 5.3 from nothing to the twelfth layer: wall time, and
+the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one. --quick: small
+scenes, to try the script. The tables replace the part of the document between its "compare" markers. About 22 minutes.
 """
 import argparse
-import datetime
-import json
-import os
-import platform
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-LAMMPS = ROOT / "scripts/peers/lammps"
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_btl_vader_single_copy_mechanism="none")
-BEGIN, END = "<!-- compare: begin -->", "<!-- compare: end -->"
+import numpy as np
+
+import measuring
+
+PEERS = measuring.ROOT / "scripts/peers"
+RADIUS, HEIGHT = 0.02, 0.5   # [m] of example 5.3
 
 
-def run(words, folder):
-    """stdout of a command; its wall time [s]."""
-    start = time.time()
-    done = subprocess.run([str(w) for w in words], cwd=folder, env=ENVIRONMENT, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, check=False)
-    if done.returncode not in (0, 3):   # 3: a pack below the asked height, which twelve layers may be
-        raise SystemExit(f"{' '.join(map(str, words))}\n{done.stdout}\nended with {done.returncode}")
-    return done.stdout, time.time() - start
+class Machine:
+    """Runs commands on one core, in a folder of its own."""
+
+    def __init__(self, core, folder):
+        self.core, self.folder = core, Path(folder)
+
+    def run(self, *words):
+        """What the command said, and its wall time [s]."""
+        start = time.monotonic()
+        done = subprocess.run(["taskset", "-c", str(self.core), *map(str, words)], cwd=self.folder,
+                              env=measuring.ENVIRONMENT, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              stdin=subprocess.DEVNULL, check=False)
+        if done.returncode not in (0, 3):   # 3: a pack below the asked height, which twelve layers may be
+            sys.exit(f"{' '.join(map(str, words))}\n{done.stdout[-3000:]}\nended with {done.returncode}")
+        return done.stdout, time.monotonic() - start
 
 
-def lammps_rates(text, atoms):
-    """Particle-steps a second of each 'Loop time' but the first, which is the warm-up."""
+def peer_rate(text, atoms):
+    """Median particle-steps a second of the 'Loop time' lines, but the first, which is the warm-up."""
     loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", text)
-    assert all(int(n) == atoms for _, _, n in loops), loops
-    return [int(steps) * atoms / float(seconds) for seconds, steps, _ in loops[1:]]
+    if len(loops) < 2 or any(int(n) != atoms for _, _, n in loops):
+        sys.exit(f"a peer lost particles or said nothing:\n{text[-2000:]}")
+    return statistics.median(int(steps) * atoms / float(seconds) for seconds, steps, _ in loops[1:])
 
 
-def bed(program, particles, runs, folder):
-    """One row: particles, our rates, LAMMPS' rates (three of each a run), and the ratios run by run."""
-    ours, theirs, ratios, bytes_each = [], [], [], 0
-    steps = 300 if particles < 500000 else 100
-    for _ in range(runs):
-        data = Path(folder) / "bed.data"
-        text, _ = run([program, particles, steps, 3, 1, 0, data], folder)
-        mine = float(re.search(r"median (\S+)e6", text)[1]) * 1e6
-        atoms = int(re.search(r"(\d+) particles on", text)[1])
-        bytes_each = int(re.search(r"(\d+) bytes a particle", text)[1])
-        side = float(re.search(r"-0.005 (\S+) xlo xhi", data.read_text()[:400])[1]) - 0.005
-        text, _ = run(["lmp", "-in", LAMMPS / "bed.in", "-var", "data", data, "-var", "S", side, "-var", "n", steps,
-                       "-var", "warm", steps, "-log", "none"], folder)
-        rates = lammps_rates(text, atoms)
-        ours.append(mine)
-        theirs.append(statistics.median(rates))
-        ratios.append(ours[-1] / theirs[-1])
-    return {"what": f"bed of {atoms:,}", "ours": ours, "theirs": theirs, "ratios": ratios, "bytes": bytes_each}
+def one_bed(machine, options, particles, deviation):
+    """Particle-steps a second of each code on one bed, and what the bed is."""
+    steps = 300 if particles < 500000 else 60
+    data = machine.folder / "bed.data"
+    text, _ = machine.run(options.build / "tests/bench/bed_bench", particles, steps, 3, 1, deviation, data)
+    atoms = int(re.search(r"(\d+) particles on", text)[1])
+    head = data.read_text()[:400]
+    side = float(re.search(r"-0.005 (\S+) xlo xhi", head)[1]) - 0.005
+    rates = {"packmpi": float(re.search(r"median (\S+)e6", text)[1]) * 1e6}
+    common = ["-var", "data", data, "-var", "S", f"{side:.6f}", "-var", "n", steps, "-var", "warm", steps]
+    text, _ = machine.run("lmp", "-in", PEERS / "lammps/bed.in", *common, "-log", "none")
+    rates["LAMMPS"] = peer_rate(text, atoms)
+    if deviation == 0:
+        text, _ = machine.run("liggghts", "-in", PEERS / "liggghts/bed.in", *common, "-log", "liggghts.log")
+        rates["LIGGGHTS"] = peer_rate(text, atoms)
+    return atoms, rates
 
 
-def brick_density(dump, height=0.5, radius=0.02):
-    """phi between 0.2 and 0.8 H_d of a LAMMPS dump of equal spheres in the unit square, with exact caps."""
-    lines = Path(dump).read_text().split("ITEM: ATOMS")[1].split("\n")[1:]
-    z = [float(line.split()[-1]) for line in lines if line.strip()]
-
-    def below(level):
-        volume = 0.0
-        for centre in z:
-            h = min(max(level - centre + radius, 0.0), 2 * radius)
-            volume += 3.141592653589793 * h * h * (3 * radius - h) / 3
-        return volume
-    return (below(0.8 * height) - below(0.2 * height)) / (0.6 * height), len(z)
-
-
-def brick(program, runs, folder):
-    """Example 5.3, whole job, seeds 1 .. runs; both make twelve layers."""
+def beds(machine, options):
+    """Rows: what, and for each run the rates by code."""
     rows = []
-    for seed in range(1, runs + 1):
-        _, mine = run([program, ROOT / "input/paper_5_3.toml", "-q", "--seed", seed, "--set", "layers.maximum=12",
-                       "-o", f"ours{seed}"], folder)
-        got = json.loads((Path(folder) / f"ours{seed}/paper_5_3.json").read_text())["got"]
-        _, other = run(["lmp", "-in", LAMMPS / "brick.in", "-var", "mol", LAMMPS / "sphere.mol", "-var", "tag", f"s{seed}",
-                        "-var", "seed", seed, "-var", "skin", 0.0025, "-var", "maxlay", 12, "-var", "hmax", 0.6, "-log", "none", "-screen", "none"],
-                       folder)
-        phi, count = brick_density(Path(folder) / f"brick_s{seed}.dump")
-        rows.append({"seed": seed, "ours": mine, "theirs": other, "phi_ours": got["phi_bulk"], "phi_theirs": phi,
-                     "n_ours": got["particles"], "n_theirs": count})
+    for particles in options.beds:
+        runs = {0: [], 0.1: []}
+        atoms = {}
+        for run in range(options.runs):
+            for deviation, found in runs.items():
+                atoms[deviation], rates = one_bed(machine, options, particles, deviation)
+                found.append(rates)
+                print(f"bed of {atoms[deviation]}, sd {deviation}, run {run + 1}: "
+                      + ", ".join(f"{code} {rate * 1e-6:.1f}e6" for code, rate in rates.items()), flush=True)
+        rows += [(f"{atoms[sd]:,}, {'Gaussian' if sd else 'equal'}", found) for sd, found in runs.items()]
     return rows
 
 
-def spread(values, scale=1.0, digits=1):
-    values = sorted(v * scale for v in values)
-    return f"{statistics.median(values):.{digits}f} ({values[0]:.{digits}f} to {values[-1]:.{digits}f})"
+def packmpi_brick(machine, options, seed, settings):
+    folder = machine.folder / "pack"
+    scene = {"layers.maximum": options.layers, "layers.duration": options.duration,
+             "container.size": f"[{options.side},{options.side},{HEIGHT}]", **settings}
+    _, seconds = machine.run(options.build / "packmpi", measuring.ROOT / "input/paper_5_3.toml", "-q", "--force", "--seed", seed,
+                             "-o", folder, *measuring.options_of(scene))
+    return seconds, *measuring.read_pack(folder / "paper_5_3.hdf")
 
 
-def report(beds, bricks, runs):
-    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], text=True, capture_output=True).stdout.strip()
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
-    lmp = re.search(r"LAMMPS \(([^)]*)\)|- (\d+ \w+ \d+)", subprocess.run(["lmp", "-h"], text=True, capture_output=True).stdout)
-    version = next(filter(None, lmp.groups())) if lmp else "unknown"
-    out = [f"Made by `scripts/compare.py` on {datetime.date.today()}, commit {commit}, {cpu}, one core a run, {runs} runs of each in turn. "
-           f"LAMMPS {version} of Debian 12: Hertz contacts, tsuji damping, sliding friction, rotation; no history. "
-           "Median (least to most); ratios are taken run by run.", "",
-           "| settled bed | packmpi, 1e6 particle-steps/s | LAMMPS | ratio | bytes a particle |", "|---|---|---|---|---|"]
-    for row in beds:
-        out.append(f"| {row['what']} | {spread(row['ours'], 1e-6)} | {spread(row['theirs'], 1e-6)} | "
-                   f"{spread(row['ratios'], 1.0, 2)} | {row['bytes']} |")
-    if bricks:
-        out += ["", "| example 5.3, whole job | packmpi, s | LAMMPS, s | ratio | phi_bulk, packmpi | LAMMPS | spheres |",
-                "|---|---|---|---|---|---|---|"]
-        for row in bricks:
-            out.append(f"| seed {row['seed']} | {row['ours']:.1f} | {row['theirs']:.1f} | {row['theirs'] / row['ours']:.2f} | "
-                       f"{row['phi_ours']:.4f} | {row['phi_theirs']:.4f} | {row['n_ours']}, {row['n_theirs']} |")
-    return "\n".join(out)
+def peer_brick(machine, options, code, seed):
+    program, folder = {"LAMMPS": ("lmp", "lammps"), "LIGGGHTS": ("liggghts", "liggghts")}[code]
+    variables = {"tag": code, "seed": seed, "layers": options.layers, "steps": round(options.duration / 1e-4),
+                 "side": options.side}
+    if code == "LAMMPS":
+        variables["mol"] = PEERS / "lammps/sphere.mol"
+    words = [word for key, value in variables.items() for word in ("-var", key, value)]
+    _, seconds = machine.run(program, "-in", PEERS / folder / "brick.in", *words, "-log", f"{folder}.log")
+    positions = measuring.read_dump(machine.folder / f"brick_{code}.dump")
+    return seconds, positions, np.full(len(positions), RADIUS)
 
 
-def write(doc, text):
-    doc = Path(doc)
-    old = doc.read_text() if doc.exists() else f"# Performance\n\n## Against LAMMPS\n\n{BEGIN}\n{END}\n"
-    head, rest = old.split(BEGIN)
-    doc.write_text(f"{head}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
+def bricks(machine, options):
+    """For each code and protocol the runs' seconds and measures."""
+    fast = dict(measuring.FAST_3D)
+    makers = {"packmpi, paper's protocol": lambda seed: packmpi_brick(machine, options, seed, {}),
+              "packmpi, fast protocol": lambda seed: packmpi_brick(machine, options, seed, fast),
+              "LAMMPS": lambda seed: peer_brick(machine, options, "LAMMPS", seed),
+              "LIGGGHTS": lambda seed: peer_brick(machine, options, "LIGGGHTS", seed)}
+    found = {name: [] for name in makers}
+    for seed in range(1, options.seeds + 1):
+        for name, make in makers.items():
+            seconds, positions, radii = make(seed)
+            found[name].append({"seconds": seconds, **measuring.analyse(positions, radii, options.side, HEIGHT)})
+            print(f"brick, seed {seed}, {name}: {seconds:.1f} s, phi_bulk {found[name][-1]['phi_bulk']:.4f}", flush=True)
+    return found
+
+
+def ratios(runs, code):
+    return [run["packmpi"] / run[code] for run in runs if code in run]
+
+
+def bed_table(rows):
+    out = ["| settled bed | packmpi, 1e6 particle-steps/s | LAMMPS | LIGGGHTS | / LAMMPS | / LIGGGHTS |", "|---|---|---|---|---|---|"]
+    for what, runs in rows:
+        cells = [measuring.spread([run[code] for run in runs], 1, 1e-6) if code in runs[0] else ""
+                 for code in ("packmpi", "LAMMPS", "LIGGGHTS")]
+        cells += [measuring.spread(ratios(runs, code), 2) if code in runs[0] else "" for code in ("LAMMPS", "LIGGGHTS")]
+        out.append("| " + " | ".join([what, *cells]) + " |")
+    return out
+
+
+def brick_table(found):
+    out = ["| example 5.3, whole job | s | LAMMPS' time over it | spheres | phi_bulk | coordination | mean overlap / r |",
+           "|---|---|---|---|---|---|---|"]
+    for name, runs in found.items():
+        gains = [other["seconds"] / run["seconds"] for run, other in zip(runs, found["LAMMPS"])]
+        mean = {key: statistics.mean(run[key] for run in runs) for key in ("spheres", "phi_bulk", "coordination", "overlap")}
+        out.append(f"| {name} | {measuring.spread([run['seconds'] for run in runs])} | {measuring.spread(gains, 2)} | {mean['spheres']:.0f} | "
+                   f"{mean['phi_bulk']:.4f} | {mean['coordination']:.2f} | {mean['overlap']:.2e} |")
+    paper, fast = (found[f"packmpi, {kind} protocol"] for kind in ("paper's", "fast"))
+    phi, contacts = (statistics.mean(f[key] - p[key] for f, p in zip(fast, paper)) for key in ("phi_bulk", "coordination"))
+    overlap = statistics.mean(f["overlap"] / p["overlap"] for f, p in zip(fast, paper))
+    out += ["", f"Fast against the paper's protocol, mean of {len(fast)} seeds: phi_bulk {phi:+.4f}, coordination {contacts:+.3f}, "
+            f"mean overlap x {overlap:.2f}; the protocol: `{' '.join(measuring.options_of(measuring.FAST_3D))}`."]
+    return out
+
+
+def version(words, pattern):
+    said = subprocess.run(words, text=True, capture_output=True, stdin=subprocess.DEVNULL, check=False).stdout
+    got = re.search(pattern, said)
+    return got[1] if got else "of unknown version"
+
+
+def report(options, rows, found):
+    lammps = version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)")
+    liggghts = version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")
+    out = [f"{measuring.made_by('scripts/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. LAMMPS {lammps}, "
+           f"LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, sliding friction without history, rotation. "
+           f"Beds: {options.runs} runs of each, bricks: {options.seeds} seeds of each. Median (least to most); ratios are taken run by run.", ""]
+    if rows:
+        out += [*bed_table(rows), ""]
+    if found:
+        out += brick_table(found)
+    return "\n".join(out).rstrip()
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=3, help="of each bed")
+    parser.add_argument("--seeds", type=int, default=2, help="of the brick")
+    parser.add_argument("--beds", type=int, nargs="+", default=[107000, 964000], help="spheres")
+    parser.add_argument("--no-beds", dest="beds", action="store_const", const=[])
+    parser.add_argument("--no-brick", dest="brick", action="store_false")
+    parser.add_argument("--quick", action="store_true", help="a bed of 9000 and a small, short brick, once")
+    parser.add_argument("--core", type=int, default=0)
+    parser.add_argument("--build", type=Path, default=measuring.ROOT / "build")
+    parser.add_argument("--doc", type=Path, default=measuring.ROOT / "doc/performance.md")
+    options = parser.parse_args()
+    options.build = options.build.resolve()
+    options.side, options.layers, options.duration = 1.0, 12, 1.0
+    if options.quick:
+        options.runs = options.seeds = 1
+        options.beds = options.beds and [9000]
+        options.side, options.layers, options.duration = 0.3, 3, 0.5
+    return options
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--beds", type=int, nargs="*", default=[107000, 964000])
-    parser.add_argument("--brick", action="store_true")
-    parser.add_argument("--build", default=ROOT / "build")
-    parser.add_argument("--doc", default=ROOT / "doc/performance.md")
-    options = parser.parse_args()
-    build = Path(options.build).resolve()
+    options = parse()
     with tempfile.TemporaryDirectory() as folder:
-        beds = [bed(build / "tests/bench/bed_bench", n, options.runs, folder) for n in options.beds]
-        bricks = brick(build / "packmpi", options.runs, folder) if options.brick else []
-    text = report(beds, bricks, options.runs)
-    write(options.doc, text)
+        machine = Machine(options.core, folder)
+        rows = beds(machine, options)
+        found = bricks(machine, options) if options.brick else {}
+    text = report(options, rows, found)
     print(text)
+    measuring.write_block(options.doc, "compare", text)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs LAMMPS, builds everything, and compares packmpi with it on the same scenes: see scripts/compare.py.
+# Installs LAMMPS and LIGGGHTS, builds everything, and compares packmpi with them on the same scenes: scripts/compare.py.
 # usage: scripts/compare.sh [options of compare.py]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

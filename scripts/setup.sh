@@ -2,7 +2,7 @@
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
 # usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
-#   --peers   also LAMMPS, to compare with
+#   --peers   also LAMMPS and LIGGGHTS, to compare with
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
 #   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/check.sh
@@ -14,7 +14,7 @@ packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpet
 for option in "$@"; do
   case $option in
     --plots) packages+=(python3 python3-h5py python3-matplotlib python3-jsonschema) ;;
-    --peers) packages+=(python3 lammps) ;;
+    --peers) packages+=(python3 python3-numpy python3-scipy python3-h5py lammps liggghts) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
     --site) packages+=(mkdocs mkdocs-material) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;

@@ -1,11 +1,11 @@
-// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [spread = 0] [data file]
+// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [sd = 0] [data file]
 //
 // The whole step loop (kernel, walls, ghosts, rebuild tests, rebuilds) on a settled bed of the paper's spheres
 // (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways
 // between walls to about the asked number, and advanced. Prints particle-steps a second and core, median and spread
 // over the runs, and bytes a particle on the worst rank. With a data file (one rank), the bed is also written there as
-// LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/compare.py). `spread` is the half width
-// of uniform radii about 0.02 m, as a share (0: equal).
+// LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/compare.py). `sd` is the standard
+// deviation of Gaussian radii about 0.02 m, as a share of it, cut off at three of them (0: equal radii).
 #include <fmt/core.h>
 #include <mpi.h>
 
@@ -27,12 +27,14 @@ constexpr double radius = 0.02;     // [m]
 constexpr double brick_side = 0.5;  // [m] of the settled brick
 constexpr int brick_layers = 12;
 
-input::Input material(double side, bool rotation, double spread) {
+input::Input material(double side, bool rotation, double sd) {
   input::Input in = test::small_input(3, side, radius);
-  if (spread > 0.0) {
-    in.particles.radius.distribution = input::SizeDistribution::uniform;
-    in.particles.radius.min = radius * (1.0 - spread);
-    in.particles.radius.max = radius * (1.0 + spread);
+  if (sd > 0.0) {
+    in.particles.radius.distribution = input::SizeDistribution::gaussian;
+    in.particles.radius.mean = radius;
+    in.particles.radius.sd = radius * sd;
+    in.particles.radius.min = radius * (1.0 - 3.0 * sd);
+    in.particles.radius.max = radius * (1.0 + 3.0 * sd);
   }
   in.container.size = {side, side, 0.5};
   in.layers.thickness = 0.1;
@@ -134,11 +136,11 @@ int main(int argc, char** argv) {
   const auto steps = static_cast<std::int64_t>(argc > 2 ? std::atof(argv[2]) : 300.0);
   const int runs = argc > 3 ? std::atoi(argv[3]) : 5;
   const bool rotation = argc > 4 ? std::atoi(argv[4]) != 0 : true;
-  const double spread = argc > 5 ? std::atof(argv[5]) : 0.0;
-  const std::vector<Grain> brick = settled_brick(test::periodic(material(brick_side, rotation, spread)));
+  const double sd = argc > 5 ? std::atof(argv[5]) : 0.0;
+  const std::vector<Grain> brick = settled_brick(test::periodic(material(brick_side, rotation, sd)));
   const int tiles =
       std::max(1, static_cast<int>(std::lround(std::sqrt(particles / static_cast<double>(brick.size())))));
-  const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, spread));
+  const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, sd));
   run::Pile pile(comm, scene);
   lay_out(pile, brick, tiles);
   pile.stepper.advance(pile.store, pile.neighborhood, 1000);  // small tiles' seams and the first rebuilds

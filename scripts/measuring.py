@@ -1,0 +1,93 @@
+"""What the scripts that measure packs share: the fast protocols by name, one analysis for the packs of any code, where and
+when something was measured, and how a block of a document is written anew."""
+import datetime
+import os
+import statistics
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+ENVIRONMENT = {**{"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",   # as scripts/mpi_env.sh
+                  "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+                  "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}, **os.environ}
+
+# What a pack may differ by from the reference protocol's, at equal inserted mass.
+BOUNDS = {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}
+
+# Shorter protocols of example 5.3 (3D, r = 20 mm, E = 1e8 Pa, reference step 1e-4 s), doc/theory.md "Shorter runs".
+FAST_3D = {"layers.youngs_modulus": "1e7", "layers.time_step": "5.9e-4", "layers.duration": "0.3",
+           "layers.velocity": "[0.0,0.0,-0.3]", "dynamics.window": "5", "dynamics.thaw": "0.9", "dynamics.time_step": "2e-4"}
+
+
+def options_of(settings):
+    """{"a.b": "1"} as packmpi's --set options."""
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+
+
+def touching(positions, radii):
+    """Pairs (M, 2) of spheres that overlap and their overlaps over the smaller radius. No periodic images."""
+    from scipy.spatial import cKDTree
+    pairs = cKDTree(positions).query_pairs(2.0 * radii.max(), output_type="ndarray")
+    gap = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
+    overlap = radii[pairs[:, 0]] + radii[pairs[:, 1]] - gap
+    pairs, overlap = pairs[overlap > 0.0], overlap[overlap > 0.0]
+    return pairs, overlap / np.minimum(radii[pairs[:, 0]], radii[pairs[:, 1]])
+
+
+def solid_below(level, heights, radii):
+    """Volume of spheres below a level, with exact caps [m3]."""
+    h = np.clip(level - heights + radii, 0.0, 2.0 * radii)
+    return float(np.sum(np.pi * h * h * (3.0 * radii - h) / 3.0))
+
+
+def analyse(positions, radii, side, height):
+    """Solid fraction between 0.2 and 0.8 of the height, mean touching spheres, mean overlap over the smaller radius."""
+    pairs, overlap = touching(positions, radii)
+    low, high = (solid_below(share * height, positions[:, 2], radii) for share in (0.2, 0.8))
+    return {"spheres": len(radii), "phi_bulk": (high - low) / (0.6 * height * side * side),
+            "coordination": 2.0 * len(pairs) / len(radii), "overlap": float(overlap.mean())}
+
+
+def read_dump(path):
+    """Positions (N, 3) of a LAMMPS or LIGGGHTS dump 'id x y z' of one frame."""
+    text = Path(path).read_text().split("ITEM: ATOMS")[1].split("\n", 1)[1]
+    return np.array(text.split(), float).reshape(-1, 4)[:, 1:]
+
+
+def read_pack(path):
+    """Positions and radii of a pack file."""
+    import h5py
+    with h5py.File(path) as pack:
+        return pack["particles/position"][:], pack["particles/radius"][:]
+
+
+def commit():
+    return subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], text=True, capture_output=True,
+                          check=False).stdout.strip() or "unknown"
+
+
+def machine():
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown CPU")
+
+
+def made_by(script):
+    return f"Made by `{script}` on {datetime.date.today()}, commit {commit()}, {machine()}"
+
+
+def spread(values, digits=1, scale=1.0):
+    """Median (least to most)."""
+    values = sorted(v * scale for v in values)
+    if len(values) == 1:
+        return f"{values[0]:.{digits}f}"
+    return f"{statistics.median(values):.{digits}f} ({values[0]:.{digits}f} to {values[-1]:.{digits}f})"
+
+
+def write_block(document, name, text):
+    """Replaces what stands between the document's two markers of that name."""
+    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+    document = Path(document)
+    head, rest = document.read_text().split(begin)
+    document.write_text(f"{head}{begin}\n{text}\n{end}{rest.split(end)[1]}")
