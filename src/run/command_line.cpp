@@ -77,6 +77,57 @@ void declare_init(CLI::App& app, Options& options) {
   app.add_flag("--force", options.force, "replace the file if it exists");
 }
 
+constexpr std::array<std::string_view, 2> trims{"drop", "cut"};  // output::Trim after none, in its order
+
+std::string lines(const std::vector<EndWords>& table) {
+  std::string text;
+  for (const EndWords& line : table) text += fmt::format("  {:<28}{}\n", line.term, line.text);
+  return text;
+}
+
+std::vector<EndWords> format_words() {
+  std::vector<EndWords> words;
+  for (const output::FormatWords& f : output::convert_formats()) {
+    const std::string second = *f.companion == '\0' ? "" : fmt::format(", {}", f.companion);
+    words.push_back({f.name, fmt::format("{} (NAME{}{})", f.text, f.ending, second)});
+  }
+  return words;
+}
+
+// "NX,NY" or "NX".
+void read_copies(const std::string& text, std::array<int, 2>& copies) {
+  std::istringstream words(text);
+  char comma = ',';
+  copies = {0, 1};
+  const bool sound = words >> copies[0] && (words.eof() || (words >> comma && comma == ',' && words >> copies[1])) &&
+                     (words >> std::ws).eof() && copies[0] > 0 && copies[1] > 0;
+  if (!sound) throw CLI::ValidationError("--replicate", fmt::format("\"{}\" is not NX,NY, two counts from 1 on", text));
+}
+
+void declare_convert(CLI::App& app, Options& options) {
+  output::ConvertRequest& request = options.convert;
+  app.add_option("PACK", request.pack, "pack (NAME.hdf)")->required();
+  app.add_option("--to", request.format, "format, see below")->required()->type_name("FORMAT");
+  app.add_option("-o,--output", request.file,
+                 "file to write; without it, NAME with the format's ending, beside the pack")
+      ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--trim",
+         [&request](const std::string& word) {
+           request.trim = word == trims[0] ? output::Trim::drop : output::Trim::cut;
+         },
+         "leave out particles above the height asked: those that reach above it (drop), or those with their centre "
+         "above it (cut)")
+      ->check(CLI::IsMember(std::vector<std::string>(trims.begin(), trims.end())))
+      ->type_name("drop|cut");
+  app.add_option_function<std::string>(
+         "--replicate", [&request](const std::string& text) { read_copies(text, request.copies); },
+         "write so many copies side by side along x and y; periodic axes only")
+      ->type_name("NX,NY");
+  app.add_flag("--force", options.force, "replace files that exist");
+  app.footer("Formats:\n" + lines(format_words()));
+}
+
 void declare_nothing(CLI::App&, Options&) {}
 
 void declare_completion(CLI::App& app, Options& options) {
@@ -98,20 +149,12 @@ constexpr std::array declarations{
     Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
     Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
     Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},
+    Declaration{Command::convert, "convert", "write a pack in the format of another code", declare_convert},
     Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
     Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
                 declare_completion}};
 
-std::string end_words() {
-  std::string text;
-  const auto add = [&](const char* title, const std::vector<EndWords>& lines) {
-    text += fmt::format("{}\n", title);
-    for (const EndWords& line : lines) text += fmt::format("  {:<28}{}\n", line.term, line.text);
-  };
-  add("Signals:", signal_words());
-  add("Exit codes:", exit_code_words());
-  return text;
-}
+std::string end_words() { return "Signals:\n" + lines(signal_words()) + "Exit codes:\n" + lines(exit_code_words()); }
 
 void declare_all(CLI::App& app, Options& options) {
   app.set_version_flag("--version", version_text(), "print version, git id and compiler");
@@ -151,11 +194,12 @@ std::vector<CommandWords> command_words() {
   declare_all(app, options);
   std::vector<CommandWords> all;
   for (const CLI::App* command : app.get_subcommands({})) {
-    CommandWords words{command->get_name(), command->get_description(), {}, {}};
+    CommandWords words{command->get_name(), command->get_description(), {}, {}, {}};
     for (const CLI::Option* option : command->get_options()) {
       if (option == command->get_help_ptr()) continue;
       (option->get_positional() ? words.arguments : words.options).push_back(words_of(*option));
     }
+    if (words.name == "convert") words.table = format_words();
     if (words.name == "completion") words.arguments.front().choices = {"bash", "zsh", "fish"};
     all.push_back(words);
   }

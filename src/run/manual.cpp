@@ -43,7 +43,7 @@ std::string section(const CommandWords& command) {
   std::string out = fmt::format(".SS \"{}\"\n{}.\n", troff(head), troff(command.text));
   for (const OptionWords& argument : command.arguments) out += entry(argument);
   for (const OptionWords& option : command.options) out += entry(option);
-  return out;
+  return out + entries(command.table);
 }
 
 }  // namespace

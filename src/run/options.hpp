@@ -8,10 +8,11 @@
 
 #include "base/log.hpp"
 #include "input/read.hpp"
+#include "output/convert.hpp"
 
 namespace packmpi::run {
 
-enum class Command { run, check, info, init, schema, manual, completion };
+enum class Command { run, check, info, convert, init, schema, manual, completion };
 
 /// What the user asked on the command line.
 struct Options {
@@ -25,8 +26,9 @@ struct Options {
   std::int64_t max_steps = 0;  ///< of this run, then the same; 0: no limit
   log::Verbosity verbosity = log::Verbosity::normal;
   log::Format log_format = log::Format::text;
-  int dimension = 3;  ///< of the scene that init writes
-  std::string shell;  ///< completion: "bash", "zsh" or "fish"
+  int dimension = 3;               ///< of the scene that init writes
+  output::ConvertRequest convert;  ///< convert: all of it but `force`
+  std::string shell;               ///< completion: "bash", "zsh" or "fish"
 };
 
 /// Text to print and the exit code, for --help, --version, usage errors, schema, manual and completion.
@@ -46,21 +48,24 @@ struct OptionWords {
   std::string text;
 };
 
+/// A line of a list in the help and the manual.
+struct EndWords {
+  std::string term, text;
+};
+
 /// One command of the program, as documented.
 struct CommandWords {
   std::string name;
   std::string text;
   std::vector<OptionWords> arguments;  ///< positional
   std::vector<OptionWords> options;    ///< without --help
+  std::vector<EndWords> table;         ///< what else its help lists, a line each
 };
 
 /// All commands with all their options, from the declarations that the parser uses. Local.
 [[nodiscard]] std::vector<CommandWords> command_words();
 
 /// What ends every help text and the manual: signals and exit codes, a line each.
-struct EndWords {
-  std::string term, text;
-};
 [[nodiscard]] const std::vector<EndWords>& exit_code_words();
 [[nodiscard]] const std::vector<EndWords>& signal_words();
 

@@ -10,6 +10,7 @@
 #include "comm/session.hpp"
 #include "input/starter.hpp"
 #include "output/report.hpp"
+#include "run/convert.hpp"
 #include "run/files.hpp"
 #include "run/info.hpp"
 #include "run/make_pack.hpp"
@@ -76,6 +77,11 @@ int act(const comm::Comm& comm, const Options& options) {
     return 0;
   }
   if (options.command == Command::init) return begin_scene(comm, options);
+  if (options.command == Command::convert) {
+    const std::string words = convert(comm, options);
+    if (comm.rank() == 0) fmt::print("{}", words);
+    return 0;
+  }
   const input::Input in = input::read(comm, options.scene, options.overrides);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same

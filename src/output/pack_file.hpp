@@ -1,0 +1,33 @@
+/// A pack file, open for reading in slices. Private to this room.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "output/hdf5.hpp"
+#include "output/pack.hpp"
+
+namespace packmpi::output {
+
+/// Rank-local; several ranks may each have the same file open. Errors: Error(io_failure), HDF5's words without the
+/// path.
+class PackFile {
+ public:
+  /// Opens it and checks the format version and the shape of /particles/id.
+  explicit PackFile(const std::string& path);
+
+  [[nodiscard]] int dimension() const noexcept { return dimension_; }
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }  ///< particles
+  [[nodiscard]] bool rotation() const noexcept { return rotation_; }    ///< spins are there
+  /// Rows [begin, begin + count) of all particle datasets, whose shapes are checked. Cost: O(count).
+  [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
+  [[nodiscard]] std::string text(const char* object, const char* attribute) const;
+  [[nodiscard]] double number(const char* object, const char* attribute) const;
+
+ private:
+  h5::Handle file_;
+  int dimension_ = 3;
+  std::int64_t count_ = 0;
+  bool rotation_ = false;
+};
+
+}  // namespace packmpi::output
