@@ -43,4 +43,19 @@ double cube_root(double x) noexcept {
   return std::ldexp(root, exponent / 3);
 }
 
+double fifth_root(double x) noexcept {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);  // [0.5, 1)
+  while (exponent % 5 != 0) {
+    mantissa *= 0.5;
+    ++exponent;
+  }
+  double root = 0.6 + 0.4 * mantissa;  // mantissa in [1/32, 1): within 23 %
+  for (int k = 0; k < 7; ++k) {
+    const double fourth = (root * root) * (root * root);
+    root -= (fourth * root - mantissa) / (5.0 * fourth);
+  }
+  return std::ldexp(root, exponent / 5);
+}
+
 }  // namespace packmpi::elementary

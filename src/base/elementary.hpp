@@ -11,5 +11,7 @@ namespace packmpi::elementary {
 [[nodiscard]] double exponential(double x) noexcept;
 /// x^(1/3) for finite x > 0.
 [[nodiscard]] double cube_root(double x) noexcept;
+/// x^(1/5) for finite x > 0.
+[[nodiscard]] double fifth_root(double x) noexcept;
 
 }  // namespace packmpi::elementary

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "scene/limits.hpp"
 
@@ -111,8 +112,8 @@ geometry::Box box_of(const input::Container& container) {
 }  // namespace
 
 double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed) {
-  return 2.87 *
-         std::pow(reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed), 0.2);
+  const double x = reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed);
+  return 2.87 * (std::isfinite(x) && x > 0.0 ? elementary::fifth_root(x) : x);
 }
 
 double safe_time_step(const input::Input& in, const Sizes& sizes) {

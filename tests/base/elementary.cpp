@@ -11,17 +11,20 @@ namespace {
 double off(double got, double exact) { return std::abs(got - exact) / std::abs(exact); }
 
 TEST(Elementary, AgreesWithTheLibraryToAFewLastBits) {
-  double worst_log = 0.0, worst_exp = 0.0, worst_root = 0.0;
+  double worst_log = 0.0, worst_exp = 0.0, worst_root = 0.0, worst_fifth = 0.0;
   for (int k = -3000; k <= 3000; ++k) {
     const double x = std::pow(1.2345, k / 10.0) * (1.0 + 1e-7 * k);
     if (std::abs(std::log(x)) > 1e-3) worst_log = std::max(worst_log, off(logarithm(x), std::log(x)));
     worst_root = std::max(worst_root, off(cube_root(x), std::cbrt(x)));
+    const double fifth = fifth_root(x);
+    worst_fifth = std::max(worst_fifth, off(fifth * fifth * fifth * fifth * fifth, x));
     const double y = 0.2 * k + 1e-5 * k;
     worst_exp = std::max(worst_exp, off(exponential(y), std::exp(y)));
   }
   EXPECT_LT(worst_log, 1e-15);
   EXPECT_LT(worst_root, 1e-15);
   EXPECT_LT(worst_exp, 1e-15);
+  EXPECT_LT(worst_fifth, 2e-15);  // five times the root's
 }
 
 TEST(Elementary, ExactValues) {
@@ -30,6 +33,7 @@ TEST(Elementary, ExactValues) {
   EXPECT_EQ(exponential(-1000.0), 0.0);
   EXPECT_EQ(exponential(1000.0), std::numeric_limits<double>::infinity());
   for (const double x : {0.001, 0.5, 3.0, 7.0, 1e10}) EXPECT_NEAR(cube_root(x * x * x) / x, 1.0, 3e-16);
+  for (const double x : {1.0, 32.0, 1.0 / 1024.0}) EXPECT_EQ(fifth_root(x * x * x * x * x), x);
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""Makes the large packs and writes their figures into doc/performance.md: input/million.toml with its own short protocol
+and with the paper's, and input/tall.toml to growing heights.
+
+usage: scripts/large.py [--ranks 2] [--scale 1.0] [--only million paper tall] [--picture]
+
+--scale s: the million's lateral extents times s, to try it (0.32: 1e5 spheres). Results are kept in results/large and not
+made anew while the program and the settings are the same. --picture draws the million (scripts/render.py).
+"""
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import measuring
+
+PAPER = {"layers.duration": "1.0", "layers.velocity": "[0.0,0.0,0.0]", "layers.youngs_modulus": "1e8", "layers.time_step": "1e-4",
+         "dynamics.window": "0", "dynamics.thaw": "0.0", "dynamics.time_step": "1e-4"}
+SIDE, HEIGHT = 10.58, 0.48   # [m] of input/million.toml
+TALL = (0.25, 0.5, 1.0, 2.0)  # [m]
+
+
+def cases(options):
+    """Name, scene, settings of each run asked for."""
+    side = SIDE * options.scale
+    size = {"container.size": f"[{side:g},{side:g},{HEIGHT}]"}
+    runs = []
+    if "million" in options.only:
+        runs.append(("million", "million", size, options.ranks))
+    if "paper" in options.only:
+        runs.append(("paper", "million", {**size, **PAPER}, options.ranks))
+    if "tall" in options.only:
+        runs += [(f"tall_{height:g}", "tall", {"container.size": f"[0.6,0.6,{height:g}]"}, 1) for height in TALL]
+    return runs
+
+
+def make(options, name, scene, settings, ranks):
+    """The figures of a run, from its results if it was made before."""
+    folder = options.results / name
+    kept = folder / "figures.json"
+    key = [measuring.commit(), scene, settings, ranks]
+    if kept.exists() and json.loads(kept.read_text())["key"] == key:
+        return json.loads(kept.read_text())
+    folder.mkdir(parents=True, exist_ok=True)
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    done = subprocess.run(["mpirun", "-n", str(ranks), options.program, measuring.ROOT / f"input/{scene}.toml", "-q", "--force",
+                           "-o", folder, *measuring.options_of(settings)], env=measuring.ENVIRONMENT,
+                          stdout=subprocess.DEVNULL, check=False)
+    wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode not in (0, 3):
+        sys.exit(f"large: {name} ended with exit code {done.returncode}")
+    summary = json.loads((folder / f"{scene}.json").read_text())
+    figures = {"key": key, "ranks": ranks, "wall": wall, "cpu": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+               "peak": after.ru_maxrss / 1024.0, "layers": len(summary["layers"]),
+               "bytes": summary["provenance"].get("bytes_per_particle"), **summary["got"]}
+    kept.write_text(json.dumps(figures, indent=1))
+    print(f"{name}: {figures['particles']} spheres in {wall:.1f} s", flush=True)
+    return figures
+
+
+def million_table(found):
+    out = ["| protocol | spheres | ranks | wall | particle-steps | a second of wall | MB, largest process | phi_bulk | coordination | mean overlap / r |",
+           "|---|---|---|---|---|---|---|---|---|---|"]
+    for name, words in (("million", "short, as in the file"), ("paper", "the paper's")):
+        if name not in found:
+            continue
+        f = found[name]
+        out.append(f"| {words} | {f['particles']:,} | {f['ranks']} | {f['wall'] / 60.0:.1f} min | {f['particle_steps']:.3g} | "
+                   f"{f['particle_steps'] / f['wall'] * 1e-6:.1f}e6 | {f['peak']:.0f} | {f['phi_bulk']:.4f} | {f['coordination']:.3f} | "
+                   f"{f['mean_overlap']:.3e} |")
+    if "million" in found and "paper" in found:
+        short, paper = found["million"], found["paper"]
+        out += ["", f"Short against the paper's protocol: phi_bulk {short['phi_bulk'] - paper['phi_bulk']:+.4f}, coordination "
+                f"{short['coordination'] - paper['coordination']:+.3f}, mean overlap x {short['mean_overlap'] / paper['mean_overlap']:.2f}; "
+                f"{short['layers']} and {paper['layers']} layers."]
+    return out
+
+
+def tall_table(found):
+    rows = [figures for name, figures in found.items() if name.startswith("tall")]
+    if not rows:
+        return []
+    cost = [f["cpu"] / f["particles"] for f in rows]
+    out = ["| height, m | layers | spheres | particle-steps a sphere | CPU s | CPU s a sphere |", "|---|---|---|---|---|---|"]
+    for f, each in zip(rows, cost):
+        out.append(f"| {f['height']:.3f} | {f['layers']} | {f['particles']:,} | {f['particle_steps'] / f['particles']:.3g} | {f['cpu']:.1f} | {each:.2e} |")
+    return out + ["", f"The dearest sphere costs {max(cost) / min(cost):.2f} times the cheapest."]
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--ranks", type=int, default=2)
+    parser.add_argument("--scale", type=float, default=1.0)
+    parser.add_argument("--only", nargs="+", choices=("million", "paper", "tall"), default=("million", "paper", "tall"))
+    parser.add_argument("--picture", action="store_true")
+    parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
+    parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/large")
+    parser.add_argument("--doc", type=Path, default=measuring.ROOT / "doc/performance.md")
+    options = parser.parse_args()
+    options.program, options.results = options.program.resolve(), options.results.resolve()
+    return options
+
+
+def main():
+    options = parse()
+    found = {name: make(options, name, scene, settings, ranks) for name, scene, settings, ranks in cases(options)}
+    scale = "" if options.scale == 1.0 else f" --scale {options.scale:g}"
+    text = "\n".join([f"{measuring.made_by('scripts/large.py' + scale)}.", "", *million_table(found), "", *tall_table(found)])
+    print(text)
+    measuring.write_block(options.doc, "large", text.rstrip())
+    if options.picture and "million" in found:
+        subprocess.run([measuring.ROOT / "scripts/render.py", options.results / "million/million.hdf", "-o",
+                        measuring.ROOT / "doc/images/million.png"], check=True)
+
+
+if __name__ == "__main__":
+    main()
