@@ -35,6 +35,7 @@ class Stepper {
   /// Collective. Throws as advance() if any particle has any fault. Cost: about a step.
   void check(const particles::Store& store, const neighbor::Neighborhood& neighborhood, const Moment& now);
 
+  [[nodiscard]] const Law& law() const noexcept { return law_; }  ///< of the stage in use
   /// Largest contact force and speed bound of the last step, this rank. [N], [m/s]
   [[nodiscard]] const StepReport& last() const noexcept { return last_; }
   [[nodiscard]] std::int64_t particle_steps() const noexcept { return particle_steps_; }  ///< this rank, so far

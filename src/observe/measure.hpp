@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "comm/comm.hpp"
-#include "neighbor/lists.hpp"
+#include "dynamics/law.hpp"
+#include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
 
@@ -38,6 +39,25 @@ struct Motion {
   double mass;            ///< [kg]
 };
 [[nodiscard]] Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
+
+/// Energies and momentum of the moving particles at this instant, for the step log.
+struct Ledger {
+  double kinetic_energy;     ///< [J] translation and spin; as Motion's, to the bit
+  double rotational_energy;  ///< [J] of it, spin
+  double potential_energy;   ///< [J] of gravity; 0 with all centres on the floor
+  double elastic_energy;     ///< [J] of the contacts of moving particles, with each other, the frozen and walls
+  Vec3 momentum;             ///< [kg m/s]
+  double max_speed;          ///< [m/s]
+  double mean_height;        ///< [m] of the centres
+};
+/// Collective; from current lists and ghosts. Exact sums. `frozen_below`: ids below it are frozen. Cost: about two
+/// steps.
+[[nodiscard]] Ledger ledger(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                            const dynamics::Law& law, const neighbor::Neighborhood& neighborhood,
+                            GlobalId frozen_below = 0);
+/// Kinetic and potential energy [J] of the owned particles with ids in [from, to). Collective, exact.
+[[nodiscard]] double energy_of(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                               GlobalId from, GlobalId to);
 
 /// Contacts at this instant, from current lists and ghosts: of all particles, or of the moving ones with each other and
 /// with the frozen, whose ids are below `frozen_below`. Collective.

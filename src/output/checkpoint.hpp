@@ -30,6 +30,7 @@ struct RunState {
   bool rotation = true;
   std::vector<GlobalId> first_ids;  ///< of each layer inserted so far
   GlobalId count = 0;               ///< particles
+  double energy_given = 0.0;        ///< [J] to the moving particles, for the step log
   std::int64_t steps = 0;           ///< since the beginning of the run
   std::int64_t particle_steps = 0;  ///< on all ranks, since the beginning
   std::vector<LayerRow> layers;     ///< settled

@@ -25,13 +25,18 @@ struct StepRow {
   std::int64_t step = 0;  ///< since the beginning of the run
   double time = 0.0;      ///< [s] simulated
   std::int64_t particles = 0;
-  double kinetic_energy = 0.0;  ///< [J]
-  double max_speed = 0.0;       ///< [m/s]
-  double top = 0.0;             ///< [m]
-  double mean_height = 0.0;     ///< [m] mean height of the moving particles' centres
-  double max_force = 0.0;       ///< [N]
-  std::int64_t rebuilds = 0;    ///< so far; depends on the ranks
-  std::int64_t moving = 0;      ///< particles that are not frozen
+  double kinetic_energy = 0.0;     ///< [J]
+  double max_speed = 0.0;          ///< [m/s]
+  double top = 0.0;                ///< [m]
+  double mean_height = 0.0;        ///< [m] mean height of the moving particles' centres
+  double max_force = 0.0;          ///< [N]
+  std::int64_t rebuilds = 0;       ///< so far; depends on the ranks
+  std::int64_t moving = 0;         ///< particles that are not frozen; all that follows is theirs
+  double rotational_energy = 0.0;  ///< [J] part of the kinetic energy
+  double potential_energy = 0.0;   ///< [J] m g times the height of the centres
+  double elastic_energy = 0.0;     ///< [J] of pairs and walls
+  double dissipated = 0.0;         ///< [J] given to them at insertion, less kinetic, potential and elastic
+  Vec3 momentum{};                 ///< [kg m/s]
 };
 
 /// NAME.steps.csv, written row by row by rank 0 (a header line names columns and units); each row is on its way to the

@@ -45,6 +45,7 @@ void each_value(State& state, Visit visit) {
   visit("rotation", state.rotation);
   visit("first_ids", state.first_ids);
   visit("count", state.count);
+  visit("energy_given", state.energy_given);
   visit("steps", state.steps);
   visit("particle_steps", state.particle_steps);
   visit("creep", state.creep);

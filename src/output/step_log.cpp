@@ -38,16 +38,20 @@ StepLog::StepLog(const comm::Comm& comm, const std::string& path, std::optional<
     if (!file_) fail(path, "open", errno);
     if (!kept.empty()) return;
     file_ << "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
-             "[N],rebuilds,moving\n";
+             "[N],rebuilds,moving,rotational energy [J],potential energy [J],elastic energy [J],dissipated "
+             "[J],momentum x "
+             "[kg m/s],momentum y [kg m/s],momentum z [kg m/s]\n";
     flush();
   });
 }
 
 void StepLog::append(const StepRow& row) {
   if (comm_->rank() != 0 || failure_ != 0) return;
-  file_ << fmt::format("{},{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n", row.layer, row.step, row.time,
-                       row.particles, row.kinetic_energy, row.max_speed, row.top, row.mean_height, row.max_force,
-                       row.rebuilds, row.moving);
+  file_ << fmt::format(
+      "{},{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+      row.layer, row.step, row.time, row.particles, row.kinetic_energy, row.max_speed, row.top, row.mean_height,
+      row.max_force, row.rebuilds, row.moving, row.rotational_energy, row.potential_energy, row.elastic_energy,
+      row.dissipated, row.momentum[0], row.momentum[1], row.momentum[2]);
   flush();
 }
 

@@ -42,21 +42,28 @@ void Journal::layer_inserted(const output::LayerRow& row) {
 }
 
 void Journal::moment(double share) {
-  const observe::Motion motion = observe::motion(pile_.comm, pile_.store, pile_.scene);
+  const observe::Ledger now =
+      observe::ledger(pile_.comm, pile_.store, pile_.scene, pile_.stepper.law(), pile_.neighborhood, pile_.moving_from);
+  const double energy = now.kinetic_energy + now.potential_energy + now.elastic_energy;
   const double top = pile_.top();
   const double force = pile_.comm.max(pile_.stepper.last().max_force);
   steps_.append({.layer = static_cast<std::int32_t>(pile_.first_ids.size()) - 1,
                  .step = pile_.steps,
                  .time = pile_.time(),
                  .particles = pile_.count,
-                 .kinetic_energy = motion.kinetic_energy,
-                 .max_speed = motion.max_speed,
+                 .kinetic_energy = now.kinetic_energy,
+                 .max_speed = now.max_speed,
                  .top = top,
-                 .mean_height = motion.mean_height,
+                 .mean_height = now.mean_height,
                  .max_force = force,
                  .rebuilds = pile_.neighborhood.rebuilds(),
-                 .moving = pile_.count - pile_.moving_from});
-  if (pile_.comm.rank() == 0 && !quiet_) progress(share, motion.kinetic_energy, top);
+                 .moving = pile_.count - pile_.moving_from,
+                 .rotational_energy = now.rotational_energy,
+                 .potential_energy = now.potential_energy,
+                 .elastic_energy = now.elastic_energy,
+                 .dissipated = pile_.energy_given - energy,
+                 .momentum = now.momentum});
+  if (pile_.comm.rank() == 0 && !quiet_) progress(share, now.kinetic_energy, top);
 }
 
 // Particle-steps still to do over those done, both reckoned from the layers, at the rate so far.

@@ -118,6 +118,7 @@ void Keeper::write() {
                                .rotation = pile_.scene.features.rotation,
                                .first_ids = pile_.first_ids,
                                .count = pile_.count,
+                               .energy_given = pile_.energy_given,
                                .steps = pile_.steps,
                                .particle_steps = pile_.particle_steps(),
                                .layers = record_.layers,

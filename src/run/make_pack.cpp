@@ -34,6 +34,7 @@ void insert_layer(Pile& pile, output::LayerRow& row) {
                                 .first_id = pile.count};
   const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store);
   pile.first_ids.push_back(pile.count);
+  pile.energy_given += observe::energy_of(pile.comm, pile.store, scene, pile.count, pile.count + got.inserted);
   pile.count += got.inserted;
   row.inserted = got.inserted;
   row.attempts = got.darts;

@@ -19,14 +19,18 @@ Pile::Pile(const comm::Comm& world, const scene::Scene& what)
 void Pile::freeze_older() {
   const auto window = static_cast<std::size_t>(scene.in.dynamics.window);
   if (window == 0 || first_ids.size() <= window) return;
+  const GlobalId before = moving_from;
   moving_from = first_ids[first_ids.size() - window];
+  energy_given -= observe::energy_of(comm, store, scene, before, moving_from);
   neighborhood.freeze(store, moving_from);
 }
 
 void Pile::thaw() {
   if (moving_from == 0) return;
+  const GlobalId before = moving_from;
   moving_from = 0;
   neighborhood.thaw(store);
+  energy_given += observe::energy_of(comm, store, scene, 0, before);
 }
 
 double Pile::time() const {

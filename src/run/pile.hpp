@@ -25,6 +25,8 @@ struct Pile {
   std::vector<GlobalId> first_ids;  ///< of each layer
   GlobalId moving_from = 0;         ///< particles with smaller ids are frozen: in neighborhood.frozen(), not in store
   GlobalId count = 0;               ///< particles on all ranks
+  /// [J] kinetic and potential, as the moving particles were given it: at insertion, less what the frozen took away
+  double energy_given = 0.0;
   std::int64_t steps = 0;
   std::int64_t thaw_steps = 0;              ///< of them, in final stages
   std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart

@@ -90,6 +90,7 @@ std::pair<output::RunState, std::string> read_first(const std::vector<std::strin
 void put_back(const output::RunState& state, Pile& pile, Stand& stand, output::RunRecord& record) {
   pile.first_ids = state.first_ids;
   pile.count = state.count;
+  pile.energy_given = state.energy_given;
   pile.steps = state.steps;
   pile.thaw_steps = state.thaw_steps;
   pile.earlier_particle_steps = state.particle_steps;

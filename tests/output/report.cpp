@@ -109,16 +109,23 @@ TEST_F(Report, StepLogIsATable) {
               .mean_height = 0.125,
               .max_force = 3.0,
               .rebuilds = 7,
-              .moving = 11});
+              .moving = 11,
+              .rotational_energy = 0.5,
+              .potential_energy = 2.0,
+              .elastic_energy = 0.75,
+              .dissipated = 4.0,
+              .momentum = {1.0, 2.0, -3.0}});
   log.append({.layer = 1, .step = 200, .time = 0.02, .particles = 5});
-  EXPECT_NE(read("a.csv").find("0,100,0.01,1234567890123,1.5,0.25,0.5,0.125,3,7,11\n"),
+  EXPECT_NE(read("a.csv").find("0,100,0.01,1234567890123,1.5,0.25,0.5,0.125,3,7,11,0.5,2,0.75,4,1,2,-3\n"),
             std::string::npos);  // before close()
   log.close();
   const std::string text = read("a.csv");
-  EXPECT_EQ(text.substr(0, text.find('\n')),
-            "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
-            "[N],rebuilds,moving");
-  EXPECT_NE(text.find("\n1,200,0.02,5,0,0,0,0,0,0,0\n"), std::string::npos);
+  EXPECT_EQ(
+      text.substr(0, text.find('\n')),
+      "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "
+      "[N],rebuilds,moving,rotational energy [J],potential energy [J],elastic energy [J],dissipated [J],momentum x "
+      "[kg m/s],momentum y [kg m/s],momentum z [kg m/s]");
+  EXPECT_NE(text.find("\n1,200,0.02,5,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"), std::string::npos);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

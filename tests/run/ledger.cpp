@@ -1,0 +1,151 @@
+// The ledger of the step log: without losses the energy stays, to the order of the integrator; without walls the
+// momentum stays, to rounding; and what is lost is booked as dissipated.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "observe/measure.hpp"
+#include "rsa/insert.hpp"
+#include "run/pile.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi::run {
+namespace {
+
+// A layer inserted above the floor, and its energy given.
+struct Layer {
+  comm::Comm comm{MPI_COMM_WORLD};
+  scene::Scene scene;
+  Pile pile;
+  explicit Layer(const input::Input& in) : scene(scene::build(in)), pile(comm, scene) {
+    const rsa::LayerRegion region{0, 0.3, in.layers.thickness, 0};
+    pile.count = rsa::insert(comm, scene, pile.ownership, region, pile.store).inserted;
+    pile.first_ids = {0};
+    pile.energy_given = observe::energy_of(comm, pile.store, scene, 0, pile.count);
+    pile.neighborhood.rebuild(pile.store);
+  }
+  [[nodiscard]] observe::Ledger now() const {
+    return observe::ledger(comm, pile.store, scene, pile.stepper.law(), pile.neighborhood);
+  }
+  void advance(double seconds) {
+    pile.stepper.advance(pile.store, pile.neighborhood, std::llround(seconds / scene.time_step));
+  }
+};
+
+double total(const observe::Ledger& now) { return now.kinetic_energy + now.potential_energy + now.elastic_energy; }
+
+struct Case {
+  int dimension;
+  bool graded;
+};
+
+input::Input lossless(const Case& what, double step) {
+  input::Input in =
+      what.graded ? test::graded_input(what.dimension, 0.5, 0.02, 1.5) : test::small_input(what.dimension, 0.5, 0.02);
+  in.particles.youngs_modulus = 1e7;
+  in.layers.thickness = 0.2;
+  in.layers.fraction = 0.1;
+  in.layers.velocity = {0.7, what.dimension == 3 ? 0.3 : -1.0, what.dimension == 3 ? -1.0 : 0.0};
+  in.contact.damping_ratio = in.contact.friction = in.contact.wall_friction = 0.0;
+  in.dynamics.time_step = step;
+  return in;
+}
+
+// Largest departure from the energy given while all collide with all, over that energy.
+double worst_departure(const Case& what, double step, double& most_elastic) {
+  Layer layer(lossless(what, step));
+  double worst = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    layer.advance(0.01);
+    const observe::Ledger now = layer.now();
+    worst = std::max(worst, std::abs(total(now) - layer.pile.energy_given));
+    most_elastic = std::max(most_elastic, now.elastic_energy / layer.pile.energy_given);
+  }
+  return worst / layer.pile.energy_given;
+}
+
+TEST(Ledger, EnergyStaysToFirstOrderInTheStep) {
+  for (const Case& what : {Case{2, false}, Case{2, true}, Case{3, false}, Case{3, true}}) {
+    double elastic = 0.0;
+    const double coarse = worst_departure(what, 1e-4, elastic);
+    const double fine = worst_departure(what, 2e-5, elastic);
+    EXPECT_GT(elastic, 0.01) << "nothing collided when it was looked at";
+    EXPECT_LT(coarse, 0.02);
+    EXPECT_LT(fine, 0.35 * coarse) << "of first order it would be a fifth";
+  }
+}
+
+TEST(Ledger, MomentumStaysWithoutWalls) {
+  for (const Case& what : {Case{2, false}, Case{2, true}, Case{3, false}, Case{3, true}}) {
+    input::Input in = test::periodic(lossless(what, 1e-4));
+    in.jamming.gravity = 0.0;
+    in.layers.fraction = 0.2;
+    in.contact.friction = 0.5;
+    in.contact.damping_ratio = 0.2;
+    in.layers.velocity = {1.0, 0.0, 0.0};  // eq. (23) wants a speed
+    Layer layer(in);
+    for (LocalIndex i = 0; i < layer.pile.store.owned(); ++i) {  // every other one the other way, and a spin
+      double* record = layer.pile.store.record(i);
+      const GlobalId id = layer.pile.store.ids()[static_cast<std::size_t>(i)];
+      if (id % 2 == 1) record[layer.pile.store.layout().velocity] = -1.5;
+      record[layer.pile.store.layout().spin] = 0.3;
+    }
+    layer.pile.neighborhood.rebuild(layer.pile.store);
+    const observe::Ledger before = layer.now();
+    const double sum =
+        std::sqrt(2.0 * before.kinetic_energy * observe::motion(layer.comm, layer.pile.store, layer.scene).mass);
+    layer.advance(0.1);
+    const observe::Ledger after = layer.now();
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(after.momentum[a], before.momentum[a], 1e-13 * sum);
+    EXPECT_LT(total(after), 0.9 * total(before));  // they did collide
+    EXPECT_GT(after.rotational_energy, 0.0);
+  }
+}
+
+TEST(Ledger, LossesAreBookedAsDissipated) {  // two spheres head-on, of the literal law's exact restitution
+  const double xi = 0.3;
+  const double b = xi * std::sqrt(6.0 / 5.0);
+  const double restitution = std::exp(-std::numbers::pi * b / std::sqrt(1.0 - b * b));
+  input::Input in = test::periodic(lossless({3, false}, 1e-6));
+  in.jamming.gravity = 0.0;
+  in.contact.damping_ratio = xi;
+  in.contact.tension_cutoff = false;
+  Layer layer(in);
+  const std::vector<LocalIndex> nobody;
+  layer.pile.store.keep(nobody);
+  for (const int side : {0, 1}) {
+    const Vec3 x{0.2299 + 0.0402 * side, 0.25, 0.25};  // on two ranks
+    const bool mine = layer.pile.ownership.owner(layer.pile.ownership.grid().column(x)) == layer.comm.rank();
+    if (mine) layer.pile.store.add(side, x, 0.02, {side == 0 ? 0.5 : -0.5, 0.0, 0.0}, {});
+  }
+  layer.pile.neighborhood.rebuild(layer.pile.store);
+  layer.pile.energy_given = observe::energy_of(layer.comm, layer.pile.store, layer.scene, 0, 2);
+  layer.advance(0.02);
+  const double dissipated = layer.pile.energy_given - total(layer.now());
+  EXPECT_NEAR(dissipated / layer.pile.energy_given, 1.0 - restitution * restitution, 1e-3);
+}
+
+TEST(Ledger, TheSameBitsOnAnyNumberOfRanks) {
+  input::Input in = test::periodic(lossless({3, true}, 1e-4));
+  Layer all(in);
+  all.advance(0.35);
+  const comm::Comm self(MPI_COMM_SELF);
+  Pile one(self, all.scene);
+  one.count = rsa::insert(self, all.scene, one.ownership, {0, 0.3, in.layers.thickness, 0}, one.store).inserted;
+  one.neighborhood.rebuild(one.store);
+  one.stepper.advance(one.store, one.neighborhood, 3500);
+  const observe::Ledger a = all.now();
+  const observe::Ledger b = observe::ledger(self, one.store, all.scene, one.stepper.law(), one.neighborhood);
+  EXPECT_GT(a.elastic_energy, 0.0);
+  EXPECT_EQ(a.elastic_energy, b.elastic_energy);
+  EXPECT_EQ(a.kinetic_energy, b.kinetic_energy);
+  EXPECT_EQ(a.kinetic_energy, observe::motion(self, one.store, all.scene).kinetic_energy);
+  EXPECT_EQ(a.potential_energy, b.potential_energy);
+  EXPECT_EQ(a.momentum, b.momentum);
+  EXPECT_EQ(a.max_speed, b.max_speed);
+}
+
+}  // namespace
+}  // namespace packmpi::run
