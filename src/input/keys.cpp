@@ -221,10 +221,10 @@ std::vector<Key> layer_keys() {
 std::vector<Key> force_keys() {
   const auto contact = &Input::contact;
   return {
-    real("jamming.gravity", at(&Input::jamming, &Jamming::gravity), acceleration, above(0), mandatory,
+    real("jamming.gravity", at(&Input::jamming, &Jamming::gravity), acceleration, at_least(0), mandatory,
          "The jamming force of the paper: a downward acceleration, usually below 9.81 to keep impacts soft."),
-    real("contact.damping_ratio", at(contact, &Contact::damping_ratio), plain, between(0, 1), "0.1",
-         "Fraction xi of critical damping of the normal contact; restitution depends on it alone."),
+    real("contact.damping_ratio", at(contact, &Contact::damping_ratio), plain, at_least(0), "0.1",
+         "Fraction xi of critical damping of the normal contact; restitution depends on it alone. Beyond 1 the step must be smaller."),
     real("contact.friction", at(contact, &Contact::friction), plain, at_least(0), "0.2",
          "Coefficient mu_d of sliding friction between particles."),
     real("contact.wall_friction", at(contact, &Contact::wall_friction), plain, at_least(0), "=contact.friction",
