@@ -48,7 +48,7 @@ class Extremes : public ::testing::Test {
         comm_.broadcast(0, (fs::temp_directory_path() / ("packmpi_extremes_" + std::to_string(::getpid()))).string());
     options.force = true;
     options.verbosity = log::Verbosity::quiet;
-    const output::RunRecord record = make_pack(comm_, scene::build(input::parse(brick, "brick.toml", {set})), options);
+    output::RunRecord record = make_pack(comm_, scene::build(input::parse(brick, "brick.toml", {set})), options);
     comm_.barrier();
     if (comm_.rank() == 0) fs::remove_all(options.folder);
     comm_.barrier();
@@ -56,7 +56,7 @@ class Extremes : public ::testing::Test {
   }
   // The scene ends right: nobody lost, outside or pressed too far.
   output::RunRecord sound(const Set& set) {
-    const output::RunRecord record = pack(set);
+    output::RunRecord record = pack(set);
     EXPECT_EQ(record.audit.found, record.audit.expected);
     EXPECT_EQ(record.audit.non_finite + record.audit.outside, 0);
     EXPECT_LT(std::max(record.audit.worst_overlap, record.audit.worst_wall_penetration), 0.5);
