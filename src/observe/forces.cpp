@@ -74,8 +74,11 @@ std::vector<ContactForce> contact_forces(const particles::Store& store, const sc
     if (i >= store.owned()) continue;  // the other rank reports it
     const Touch at = touch(store, scene.box, i, j);
     if (!(at.overlap > 0.0)) continue;
+    const Vec3 xi = store.position(i);
+    const Vec3 branch = geometry::separation(scene.box, xi, store.position(j));
+    const auto vertical = static_cast<std::size_t>(scene.box.vertical());
     rows.push_back({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap,
-                    pair_force(store, law, i, j, at)});
+                    pair_force(store, law, i, j, at), branch, xi[vertical] + 0.5 * branch[vertical]});
   }
   std::sort(rows.begin(), rows.end(), [](const ContactForce& a, const ContactForce& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);

@@ -93,6 +93,8 @@ struct ContactForce {
   GlobalId first, second;  ///< first < second
   double overlap;          ///< [m]
   Vec3 force;              ///< [N] on the first: normal and friction, without near field
+  Vec3 branch{};           ///< [m] from the centre of the first to that of the second
+  double height = 0.0;     ///< [m] of the point half-way
 };
 /// The touching pairs whose smaller id is owned here, sorted by (first, second). Local; cost O(pairs log pairs).
 /// Every pair of the scene is returned by exactly one rank, with the same bits on any number of them.

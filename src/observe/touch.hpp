@@ -17,12 +17,7 @@ struct Touch {
 
 /// Slots i and j, owned or ghosts. Antisymmetric to the last bit: the same overlap from either side.
 [[nodiscard]] inline Touch touch(const particles::Store& store, const geometry::Box& box, LocalIndex i, LocalIndex j) {
-  const Vec3 a = store.position(i);
-  const Vec3 b = store.position(j);
-  Vec3 d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {
-    if (box.periodic[axis]) d[axis] = geometry::shortest(d[axis], box.size[axis]);
-  }
+  const Vec3 d = geometry::separation(box, store.position(i), store.position(j));
   const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   const double inverse = distance > 0.0 ? 1.0 / distance : 0.0;
   return {store.radius(i) + store.radius(j) - distance, {d[0] * inverse, d[1] * inverse, d[2] * inverse}};

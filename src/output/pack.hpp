@@ -40,6 +40,14 @@ struct PackRows {
 /// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure).
 [[nodiscard]] PackRows read_pack(const std::string& path);
 
+/// One rank's share of a pack, and the scene it was made from.
+struct PackSlice {
+  PackRows rows;      ///< [rank N / ranks, (rank + 1) N / ranks)
+  std::string scene;  ///< the effective input, TOML
+};
+/// Rank-local: every rank reads its own share. Throws Error(io_failure).
+[[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
+
 /// Rank-local. Whether PATH is a pack, sound or not, rather than another file.
 [[nodiscard]] bool is_pack(const std::string& path);
 

@@ -68,6 +68,10 @@ void declare_info(CLI::App& app, Options& options) {
   app.add_option("FILE", options.scene, "pack or checkpoint")->required();
 }
 
+void declare_analyze(CLI::App& app, Options& options) {
+  app.add_option("PACK", options.scene, "pack (NAME.hdf)")->required();
+}
+
 void declare_init(CLI::App& app, Options& options) {
   app.add_option("FILE", options.scene, "scene file to write")->default_val("scene.toml");
   app.add_option("--dimension", options.dimension, "2: discs, 3: spheres")
@@ -149,6 +153,8 @@ constexpr std::array declarations{
     Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
     Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
     Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},
+    Declaration{Command::analyze, "analyze",
+                "measure a pack inside: profiles, contacts, forces, g(r), order; NAME.analysis.json", declare_analyze},
     Declaration{Command::convert, "convert", "write a pack in the format of another code", declare_convert},
     Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
     Declaration{Command::completion, "completion", "print the completion of this command line for a shell",

@@ -12,7 +12,7 @@
 
 namespace packmpi::run {
 
-enum class Command { run, check, info, convert, init, schema, manual, completion };
+enum class Command { run, check, info, analyze, convert, init, schema, manual, completion };
 
 /// What the user asked on the command line.
 struct Options {

@@ -10,6 +10,7 @@
 #include "comm/session.hpp"
 #include "input/starter.hpp"
 #include "output/report.hpp"
+#include "run/analyze.hpp"
 #include "run/convert.hpp"
 #include "run/files.hpp"
 #include "run/info.hpp"
@@ -77,6 +78,11 @@ int act(const comm::Comm& comm, const Options& options) {
     return 0;
   }
   if (options.command == Command::init) return begin_scene(comm, options);
+  if (options.command == Command::analyze) {
+    const std::string table = analyze(comm, options.scene);
+    if (comm.rank() == 0) fmt::print("{}", table);
+    return 0;
+  }
   if (options.command == Command::convert) {
     const std::string words = convert(comm, options);
     if (comm.rank() == 0) fmt::print("{}", words);

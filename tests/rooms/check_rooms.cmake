@@ -13,6 +13,7 @@ set(libraries
   "CLI/.*=run"
   "Random123/.*=base"
   "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"
+  "voro[+][+]/.*=observe"
   "nlohmann/.*=base output run")
 
 function(report where text)

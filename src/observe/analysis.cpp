@@ -1,0 +1,23 @@
+#include "observe/analysis.hpp"
+
+#include "observe/measure.hpp"
+
+namespace packmpi::observe {
+
+Analysis analyse(const Specimen& pack) {
+  Analysis a;
+  a.particles = pack.comm.sum(std::int64_t{pack.store.owned()});
+  a.mean_diameter = 2.0 * pack.scene.sizes.mean();
+  for (int axis = 0; axis < pack.scene.box.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
+  a.segregation = segregation(pack);
+  a.pairs = pair_distribution(pack);
+  a.network = network(pack);
+  a.forces = forces(pack);
+  a.floor_force = floor_force(pack.comm, pack.store, pack.scene, pack.neighborhood.walls());
+  a.weight = motion(pack.comm, pack.store, pack.scene).mass * pack.scene.in.jamming.gravity;
+  a.order = order(pack);
+  a.local = local_density(pack);
+  return a;
+}
+
+}  // namespace packmpi::observe

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/box.hpp"
+#include "observe/analysis.hpp"
+#include "observe/measure.hpp"
+
+namespace packmpi::observe {
+namespace {
+
+constexpr double bins_a_diameter = 50.0;
+
+// The room in which every centre has its whole shell inside the pack.
+struct Interior {
+  std::array<double, 3> low{}, high{};
+  [[nodiscard]] bool contains(const Vec3& x, int dimension) const {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+      if (!(x[a] >= low[a] && x[a] < high[a])) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] double volume(int dimension) const {
+    double v = 1.0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) v *= std::max(0.0, high[a] - low[a]);
+    return v;
+  }
+};
+
+Interior interior_of(const Specimen& pack, double range) {
+  const geometry::Box& box = pack.scene.box;
+  const auto v = static_cast<std::size_t>(box.vertical());
+  Interior in;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
+    in.low[a] = box.periodic[a] ? 0.0 : range;
+    in.high[a] = box.periodic[a] ? box.size[a] : box.size[a] - range;
+  }
+  in.low[v] = std::max(range, 0.2 * box.height());
+  in.high[v] = std::min(surface_height(pack.comm, pack.store, pack.scene) - range, 0.8 * box.height());
+  return in;
+}
+
+double shell(int dimension, double inner, double outer) {
+  constexpr double pi = std::numbers::pi;
+  return dimension == 3 ? 4.0 / 3.0 * pi * (outer * outer * outer - inner * inner * inner)
+                        : pi * (outer * outer - inner * inner);
+}
+
+}  // namespace
+
+PairDistribution pair_distribution(const Specimen& pack) {
+  const int dimension = pack.scene.box.dimension;
+  const double diameter = 2.0 * pack.scene.sizes.mean();
+  PairDistribution result;
+  result.g.width = 1.0 / bins_a_diameter;
+  const auto bins = static_cast<std::size_t>(std::floor(pack.range / diameter * bins_a_diameter));
+  const Interior interior = interior_of(pack, pack.range);
+  std::vector<std::int64_t> counts(bins + 1, 0);  // the last: centres
+  const particles::Store& store = pack.store;
+  for (LocalIndex i = 0; i < store.owned(); ++i)
+    counts[bins] += interior.contains(store.position(i), dimension) ? 1 : 0;
+  const neighbor::PairList& pairs = pack.neighborhood.near_pairs();
+  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
+    const LocalIndex i = pairs.first[p], j = pairs.second[p];
+    const Vec3 xi = store.position(i), xj = store.position(j);
+    const Vec3 d = geometry::separation(pack.scene.box, xi, xj);
+    const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const auto bin = static_cast<std::size_t>(distance / diameter * bins_a_diameter);
+    if (bin >= bins) continue;
+    if (interior.contains(xi, dimension)) ++counts[bin];
+    if (j < store.owned() && interior.contains(xj, dimension)) ++counts[bin];  // else its owner lists the pair, too
+  }
+  pack.comm.sum(std::span(counts));
+  result.centres = counts[bins];
+  if (result.centres == 0) return result;
+  const auto centres = static_cast<double>(result.centres);
+  const double density = centres / interior.volume(dimension);
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double inner = static_cast<double>(k) / bins_a_diameter * diameter;
+    const double expected = centres * density * shell(dimension, inner, inner + diameter / bins_a_diameter);
+    result.g.values.push_back(static_cast<double>(counts[k]) / expected);
+  }
+  return result;
+}
+
+}  // namespace packmpi::observe

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/volume.hpp"
+#include "observe/analysis.hpp"
+#include "observe/measure.hpp"
+
+namespace packmpi::observe {
+namespace {
+
+constexpr double low_bulk = 0.2, high_bulk = 0.8;  // of H_d
+constexpr double slabs_a_diameter = 4.0;
+constexpr double diameters_a_layer = 3.0;
+
+std::size_t bins_in(double length, double width) {
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(length / width - 1e-9)));
+}
+
+}  // namespace
+
+bool in_bulk(const scene::Scene& scene, double height) {
+  const double asked = scene.box.height();
+  return height >= low_bulk * asked && height < high_bulk * asked;
+}
+
+Profile density_profile(const Specimen& pack, int axis) {
+  const geometry::Box& box = pack.scene.box;
+  const auto a = static_cast<std::size_t>(axis);
+  const bool vertical = axis == box.vertical();
+  const double length = vertical ? top(pack.comm, pack.store, pack.scene) : box.size[a];
+  const double width = 2.0 * pack.scene.sizes.mean() / slabs_a_diameter;
+  Profile profile{
+      .from = 0.0, .width = vertical ? width : length / static_cast<double>(bins_in(length, width)), .values = {}};
+  const std::size_t bins = bins_in(length, profile.width);
+  std::vector<std::vector<double>> terms(bins);
+  for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
+    const Vec3 x = pack.store.position(i);
+    const double r = pack.store.radius(i);
+    if (!vertical && !in_bulk(pack.scene, x[static_cast<std::size_t>(box.vertical())])) continue;
+    const auto first = static_cast<std::ptrdiff_t>(std::floor((x[a] - r) / profile.width));
+    const auto last = static_cast<std::ptrdiff_t>(std::floor((x[a] + r) / profile.width));
+    for (std::ptrdiff_t k = first; k <= last; ++k) {  // beyond a side: periodic, the other side; else it is in the wall
+      const auto n = static_cast<std::ptrdiff_t>(bins);
+      if (!vertical && box.periodic[a] && (k < 0 || k >= n)) {
+        const std::ptrdiff_t other = (k + n) % n;
+        const double low = static_cast<double>(k) * profile.width;
+        terms[static_cast<std::size_t>(other)].push_back(
+            geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
+            geometry::volume_below(box.dimension, r, x[a], low));
+      } else if (k >= 0 && k < n) {
+        const double low = static_cast<double>(k) * profile.width;
+        terms[static_cast<std::size_t>(k)].push_back(
+            geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
+            geometry::volume_below(box.dimension, r, x[a], low));
+      }
+    }
+  }
+  profile.values = comm::exact_sums(pack.comm, terms);
+  const double section =
+      vertical ? box.floor_area() : box.floor_area() / box.size[a] * (high_bulk - low_bulk) * box.height();
+  for (double& value : profile.values) value /= section * profile.width;
+  return profile;
+}
+
+Segregation segregation(const Specimen& pack) {
+  const auto vertical = static_cast<std::size_t>(pack.scene.box.vertical());
+  const double width = diameters_a_layer * 2.0 * pack.scene.sizes.mean();
+  Segregation result;
+  const std::size_t bins = bins_in(top(pack.comm, pack.store, pack.scene), width);
+  std::vector<std::vector<double>> radii(bins);
+  std::vector<std::int64_t> counts(bins, 0);
+  std::vector<std::vector<double>> moments(5);  // r, z, r r, z z, r z
+  for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
+    const double z = pack.store.position(i)[vertical];
+    const double r = pack.store.radius(i);
+    const auto k = static_cast<std::size_t>(std::clamp(z / width, 0.0, static_cast<double>(bins) - 0.5));
+    radii[k].push_back(r);
+    ++counts[k];
+    const std::array<double, 5> terms{r, z, r * r, z * z, r * z};
+    for (std::size_t m = 0; m < terms.size(); ++m) moments[m].push_back(terms[m]);
+  }
+  result.mean_radius = {.from = 0.0, .width = width, .values = comm::exact_sums(pack.comm, radii)};
+  pack.comm.sum(std::span(counts));
+  for (std::size_t k = 0; k < bins; ++k) {
+    if (counts[k] > 0) result.mean_radius.values[k] /= static_cast<double>(counts[k]);
+  }
+  const std::vector<double> m = comm::exact_sums(pack.comm, moments);
+  const auto n = static_cast<double>(std::max<std::int64_t>(1, pack.comm.sum(std::int64_t{pack.store.owned()})));
+  const double spread = (m[2] - m[0] * m[0] / n) * (m[3] - m[1] * m[1] / n);
+  if (pack.scene.features.graded && spread > 0.0) result.correlation = (m[4] - m[0] * m[1] / n) / std::sqrt(spread);
+  return result;
+}
+
+}  // namespace packmpi::observe

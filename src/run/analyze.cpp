@@ -1,0 +1,57 @@
+#include "run/analyze.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "input/read.hpp"
+#include "output/analysis.hpp"
+#include "output/pack.hpp"
+#include "output/report.hpp"
+#include "run/pile.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr double range_in_diameters = 2.5;
+constexpr double least_in_largest = 1.25;  // largest diameters: the first shell of the largest ones
+
+// The scene with near pairs out to the analysis' range: a near field that is never evaluated.
+scene::Scene reaching_scene(const std::string& text, const std::string& path, double& range) {
+  scene::Scene scene = scene::build(input::parse(text, path, {}));
+  range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), least_in_largest * 2.0 * scene.sizes.largest());
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+    // A periodic axis takes three interaction ranges.
+    if (scene.box.periodic[axis]) range = std::min(range, scene.box.size[axis] / 3.001 - scene.skin);
+  }
+  scene.in.near_field = input::NearField{.alpha1 = 0.0, .beta1 = 0.0, .alpha2 = 0.0, .beta2 = 0.0, .cutoff = range};
+  scene.reach = std::max(2.0 * scene.sizes.largest(), range);
+  return scene;
+}
+
+// This rank's share of the rows, wherever their columns are.
+void take_share(const output::PackRows& rows, particles::Store& store) {
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    store.add(rows.id[k], rows.position[k], rows.radius[k], rows.velocity[k],
+              rows.spin.empty() ? Vec3{} : rows.spin[k]);
+  }
+}
+
+}  // namespace
+
+std::string analyze(const comm::Comm& comm, const std::string& path) {
+  output::PackSlice slice;
+  comm::agree_on(comm, [&] { slice = output::read_slice(path, comm.rank(), comm.size()); });
+  double range = 0.0;
+  const scene::Scene scene = reaching_scene(slice.scene, path, range);
+  Pile pile(comm, scene);
+  take_share(slice.rows, pile.store);
+  pile.neighborhood.rebuild(pile.store);  // to the owners of their columns
+  pile.balance();
+  const observe::Analysis analysis = observe::analyse({comm, scene, pile.store, pile.neighborhood, range});
+  const std::filesystem::path pack(path);
+  output::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
+                     output::to_json(analysis, scene.box.dimension));
+  return output::to_table(analysis, scene.box.dimension);
+}
+
+}  // namespace packmpi::run

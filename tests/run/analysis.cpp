@@ -1,0 +1,170 @@
+// The measures of `packmpi analyze` on lattices whose values are known, on any number of ranks.
+#include "observe/analysis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "run/pile.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr double r = 0.02;
+constexpr double d = 2.0 * r;
+constexpr double range = 2.5 * d;
+constexpr double squeeze = 1.0 - 1e-4;  // touching
+
+struct Lattice {
+  std::vector<Vec3> points;
+  Vec3 size;  // [m]; periodic along x (and y), `size[vertical]` high
+};
+
+/// `basis` in cells of the given size, so many along each axis.
+Lattice repeat(const std::vector<Vec3>& basis, const Vec3& cell, const std::array<int, 3>& count) {
+  Lattice lattice;
+  for (std::size_t a = 0; a < 3; ++a) lattice.size[a] = squeeze * cell[a] * count[a];
+  for (int k = 0; k < count[2]; ++k) {
+    for (int j = 0; j < count[1]; ++j) {
+      for (int i = 0; i < count[0]; ++i) {
+        for (const Vec3& b : basis) {
+          lattice.points.push_back(
+              {squeeze * cell[0] * (i + b[0]), squeeze * cell[1] * (j + b[1]), squeeze * cell[2] * (k + b[2])});
+        }
+      }
+    }
+  }
+  return lattice;
+}
+
+Lattice fcc() {
+  const double a = d * std::numbers::sqrt2;
+  return repeat({{.25, .25, .25}, {.75, .75, .25}, {.75, .25, .75}, {.25, .75, .75}}, {a, a, a}, {8, 8, 8});
+}
+
+Lattice hcp() {
+  const double h = std::sqrt(8.0 / 3.0) * d;
+  return repeat({{.25, .25, .25}, {.75, .75, .25}, {.25, .25 + 1.0 / 3.0, .75}, {.75, .75 + 1.0 / 3.0 - 1.0, .75}},
+                {d, std::numbers::sqrt3 * d, h}, {12, 7, 7});
+}
+
+Lattice simple_cubic() { return repeat({{.5, .5, .5}}, {d, d, d}, {10, 10, 10}); }
+
+Lattice hexagonal() { return repeat({{.25, .25, 0}, {.75, .75, 0}}, {d, std::numbers::sqrt3 * d, 0.0}, {16, 9, 1}); }
+
+Lattice square() { return repeat({{.5, .5, 0}}, {d, d, 0.0}, {16, 16, 1}); }
+
+class Analysis : public ::testing::Test {
+ protected:
+  const comm::Comm comm_{MPI_COMM_WORLD};
+
+  [[nodiscard]] observe::Analysis of(const Lattice& lattice, int dimension) const {
+    input::Input in = test::periodic(test::small_input(dimension, 1.0, r));
+    in.container.size.assign(lattice.size.begin(), lattice.size.begin() + dimension);
+    in.layers.thickness = 0.2;
+    scene::Scene scene = scene::build(in);
+    scene.in.near_field = input::NearField{.alpha1 = 0, .beta1 = 0, .alpha2 = 0, .beta2 = 0, .cutoff = range};
+    scene.reach = range;
+    Pile pile(comm_, scene);
+    GlobalId id = 0;
+    for (const Vec3& x : lattice.points) {  // by turns, wherever it belongs
+      if (id % comm_.size() == comm_.rank()) pile.store.add(id, x, r, {}, {});
+      ++id;
+    }
+    pile.neighborhood.rebuild(pile.store);
+    return observe::analyse({comm_, scene, pile.store, pile.neighborhood, range});
+  }
+};
+
+TEST_F(Analysis, FaceCentredCubic) {
+  const observe::Analysis a = of(fcc(), 3);
+  EXPECT_EQ(a.particles, 2048);
+  EXPECT_NEAR(a.order.q4, 0.190941, 1e-5);
+  EXPECT_NEAR(a.order.q6, 0.574524, 1e-5);
+  EXPECT_EQ(a.order.fcc, 1.0);
+  EXPECT_EQ(a.order.hcp, 0.0);
+  EXPECT_EQ(a.local.left_out, 0);
+  EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / std::sqrt(18.0), 1e-9);
+  EXPECT_LT(a.local.sd, 1e-6);
+  EXPECT_NEAR(a.network.coordination, 12.0 - 8.0 * 128.0 / 2048.0, 1e-12) << "four bonds less at top and bottom";
+  EXPECT_EQ(a.network.rattlers, 0.0);
+  EXPECT_NEAR(a.forces.fabric[0][0] + a.forces.fabric[1][1] + a.forces.fabric[2][2], 1.0, 1e-12);
+  EXPECT_NEAR(a.forces.fabric[0][0], a.forces.fabric[1][1], 1e-12);
+  EXPECT_NEAR(a.forces.fabric[0][1], 0.0, 1e-12);
+  EXPECT_GT(a.forces.stress[2][2], 0.0) << "pressed together: compression is positive";
+  EXPECT_EQ(a.segregation.correlation, 0.0);
+}
+
+TEST_F(Analysis, PairDistributionCountsTheShells) {
+  const observe::Analysis a = of(fcc(), 3);
+  ASSERT_GT(a.pairs.centres, 0);
+  // 12, 6, 24, 12, 24 neighbours at 1, sqrt 2, sqrt 3, 2, sqrt 5 diameters; the integral of 4 pi r^2 n g over a shell.
+  const auto shell = [&](double from, double to) {
+    double count = 0.0;
+    const double n = std::numbers::sqrt2;  // per cubed diameter
+    for (std::size_t k = 0; k < a.pairs.g.values.size(); ++k) {
+      const double low = a.pairs.g.width * static_cast<double>(k), high = low + a.pairs.g.width;
+      if (low < from || high > to) continue;
+      count += 4.0 / 3.0 * std::numbers::pi * (high * high * high - low * low * low) * n * a.pairs.g.values[k];
+    }
+    return count;
+  };
+  // The density is that of the interior, whose cut through the lattice is uneven: a tenth.
+  EXPECT_NEAR(shell(0.9, 1.2) / 12.0, shell(1.6, 1.9) / 24.0, 1e-9);
+  EXPECT_NEAR(shell(1.3, 1.5) / 6.0, shell(2.1, 2.4) / 24.0, 1e-9);
+  EXPECT_NEAR(shell(0.9, 1.2), 12.0, 3.0);
+  EXPECT_EQ(shell(0.0, 0.9), 0.0);
+  EXPECT_EQ(shell(1.1, 1.3), 0.0);
+}
+
+TEST_F(Analysis, HexagonalClosePacked) {
+  const observe::Analysis a = of(hcp(), 3);
+  EXPECT_NEAR(a.order.q4, 0.097222, 1e-4);
+  EXPECT_NEAR(a.order.q6, 0.484762, 1e-4);
+  EXPECT_EQ(a.order.fcc, 0.0);
+  EXPECT_EQ(a.order.hcp, 1.0);
+  EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / std::sqrt(18.0), 1e-9);
+}
+
+TEST_F(Analysis, SimpleCubic) {
+  const observe::Analysis a = of(simple_cubic(), 3);
+  EXPECT_NEAR(a.order.q4, 0.763763, 1e-5);
+  EXPECT_NEAR(a.order.q6, 0.353553, 1e-5);
+  EXPECT_EQ(a.order.fcc + a.order.hcp, 0.0);
+  EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / 6.0, 1e-9);
+  EXPECT_NEAR(a.network.coordination, 6.0 - 2.0 / 10.0, 1e-12);
+  // The profile repeats from plane to plane, and its mean is the solid fraction.
+  double mean = 0.0;
+  for (std::size_t k = 0; k < 36; ++k) mean += a.density[2].values[k] / 36.0;
+  EXPECT_NEAR(mean, std::numbers::pi / 6.0, 0.01);
+  for (const double value : a.density[0].values) EXPECT_GT(value, 0.2);
+}
+
+TEST_F(Analysis, HexagonalDiscs) {
+  const observe::Analysis a = of(hexagonal(), 2);
+  EXPECT_NEAR(a.order.psi6, 1.0, 1e-9);
+  EXPECT_NEAR(a.order.psi6_together, 1.0, 1e-9);
+  EXPECT_NEAR(a.local.mean * std::pow(squeeze, 2), std::numbers::pi / std::sqrt(12.0), 1e-9);
+  EXPECT_NEAR(a.network.coordination, 6.0 - 4.0 * 16.0 / 288.0, 1e-12);
+}
+
+TEST_F(Analysis, SquareDiscs) {
+  const observe::Analysis a = of(square(), 2);
+  EXPECT_NEAR(a.order.psi6, 0.0, 1e-9);
+  EXPECT_NEAR(a.local.mean * std::pow(squeeze, 2), std::numbers::pi / 4.0, 1e-9);
+}
+
+TEST_F(Analysis, RattlersAreReleasedOneAfterTheOther) {
+  // Discs in a bridge: each leans on its two neighbours; the last has nothing at its other side.
+  Lattice chain{.points = {}, .size = {1.0, 1.0, 0.0}};
+  for (int k = 0; k < 8; ++k) chain.points.push_back({0.2 + squeeze * d * k, 0.5, 0.0});
+  const observe::Analysis a = of(chain, 2);
+  EXPECT_EQ(a.network.loose, 2.0 / 8.0);
+  EXPECT_EQ(a.network.rattlers, 1.0);
+  EXPECT_EQ(a.network.held_coordination, 0.0);
+}
+
+}  // namespace
+}  // namespace packmpi::run
