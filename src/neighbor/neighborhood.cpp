@@ -34,7 +34,8 @@ Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, co
       ownership_(&ownership),
       columns_(ownership, comm.rank()),
       still_(comm, scene.features.layout()),
-      halo_(comm, scene.features.layout()) {}
+      halo_(comm, scene.features.layout()),
+      size_classes_(scene, ownership) {}
 
 void Neighborhood::ownership_changed() {
   columns_ = LocalColumns(*ownership_, comm_->rank());
@@ -60,7 +61,11 @@ void Neighborhood::rebuild(particles::Store& store) {
   sort_ghosts(store);
   if (still_.in_use()) add_still(store);
   remember_positions(store);
-  build_pairs(store, 1.0, 0.0, pairs_);
+  if (scene_->features.size_levels > 1) {
+    size_classes_.build({x_[0], x_[1], x_[2], radius_, store.owned()}, pairs_);
+  } else {
+    build_pairs(store, 1.0, 0.0, pairs_);
+  }
   if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
   build_walls(store);
   drift_ = 0.0;

@@ -8,6 +8,7 @@
 #include "neighbor/cells.hpp"
 #include "neighbor/halo.hpp"
 #include "neighbor/lists.hpp"
+#include "neighbor/size_classes.hpp"
 #include "neighbor/still.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
@@ -89,6 +90,7 @@ class Neighborhood {
   Cells still_cells_;           // slots of the frozen particles among the ghosts; empty while there are none
   bool still_arranged_ = true;  // by the present owners
   Halo halo_;
+  SizeClasses size_classes_;  // used if the scene has more than one
   PairList pairs_, near_pairs_;
   WallList walls_;
   // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.

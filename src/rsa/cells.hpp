@@ -2,45 +2,24 @@
 /// overlap?"
 #pragma once
 #include <array>
-#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geometry/columns.hpp"
 #include "rsa/insert.hpp"
 #include "rsa/sphere.hpp"
+#include "scene/cell_axis.hpp"
 
 namespace packmpi::rsa {
 
-/// The cells this rank needs along one axis: `count` of the `total` cells of the box, from cell `first`, in slots 1 ..
-/// count. Slots 0 and count + 1 stay empty, so that stepping off the edge needs no test.
-struct CellAxis {
-  double origin = 0.0;   ///< [m]
-  double inverse = 0.0;  ///< 1 / cell width [1/m]
-  int total = 1;
-  int first = 0;
-  int count = 1;
-  bool closed = false;  ///< periodic, and all cells are here: the last is next to the first
-
-  [[nodiscard]] int slot(double x) const noexcept {
-    int cell = static_cast<int>((x - origin) * inverse);
-    cell = (cell < 0 ? 0 : cell >= total ? total - 1 : cell) - first;
-    if (cell < 0) cell += total;
-    assert(cell < count);
-    return cell + 1;
-  }
-  [[nodiscard]] int below(int slot) const noexcept { return closed && slot == 1 ? count : slot - 1; }
-  [[nodiscard]] int above(int slot) const noexcept { return closed && slot == count ? 1 : slot + 1; }
-};
-
-/// The cells of a layer that can hold a sphere of this rank's columns or one that overlaps it. Cells are at least as
-/// wide as the largest diameter: the spheres that overlap one are in its cell or one of the cells around it. Local;
-/// O(columns).
+/// The cells of a layer that can hold a sphere of this rank's columns or one that overlaps it. Cells are at least
+/// `diameter` wide: the spheres not wider than that which overlap one not wider either are in its cell or one of the
+/// cells around it. Local; O(columns).
 class CellGrid {
  public:
   /// `asked` particles in the whole layer; cells are kept to a few a particle.
-  CellGrid(const scene::Scene& scene, const scene::Ownership& ownership, const LayerRegion& region, std::int64_t asked);
+  CellGrid(const scene::Scene& scene, const scene::Ownership& ownership, const LayerRegion& region, std::int64_t asked,
+           double diameter);
 
   using Rows = std::array<std::size_t, 9>;  ///< first cells of rows of three along the vertical
   /// The rows around a position, its own first. All nine in 3D, the first three in 2D.
@@ -59,39 +38,62 @@ class CellGrid {
   }
 
   int lateral_ = 2;
-  std::array<CellAxis, 2> axes_;
-  CellAxis vertical_axis_;
+  std::array<scene::CellAxis, 2> axes_;
+  scene::CellAxis vertical_axis_;
 };
 
-/// Spheres in the cells of a grid, as chains. Only grows, or is cleared.
+/// Grids for levels of size, so that small spheres need not search among those in large cells: one grid if radii are
+/// alike, else one for each two size classes. A sphere is searched for in its own level and those of larger spheres
+/// only, which is enough as large ones are placed first.
+class CellGrids {
+ public:
+  CellGrids(const scene::Scene& scene, const scene::Ownership& ownership, const LayerRegion& region,
+            std::int64_t asked);
+
+  [[nodiscard]] std::size_t levels() const noexcept { return grids_.size(); }
+  [[nodiscard]] const CellGrid& grid(std::size_t level) const noexcept { return grids_[level]; }
+  [[nodiscard]] std::size_t level(double radius) const noexcept {
+    std::size_t k = 0;
+    while (k + 1 < grids_.size() && radius <= largest_[k + 1]) ++k;
+    return k;
+  }
+
+ private:
+  std::vector<double> largest_;  // [m] radius in each level
+  std::vector<CellGrid> grids_;
+};
+
+/// Spheres in the cells of their level's grid, as chains. Only grows, or is cleared.
 class Bins {
  public:
-  Bins(const CellGrid& grid, const Metric& metric) : grid_(&grid), metric_(metric), heads_(grid.size(), none) {}
+  Bins(const CellGrids& grids, const Metric& metric) : grids_(&grids), metric_(metric), used_(grids.levels(), 0) {
+    for (std::size_t k = 0; k < grids.levels(); ++k) heads_.emplace_back(grids.grid(k).size(), none);
+  }
 
   /// Add a sphere under a number of the caller's.
   void add(const Sphere& sphere, std::int32_t tag) {
-    std::int32_t& head = heads_[grid_->cell(sphere.centre)];
+    const std::size_t level = grids_->level(sphere.radius);
+    std::int32_t& head = heads_[level][grids_->grid(level).cell(sphere.centre)];
     nodes_.push_back({sphere, head, tag});
     head = static_cast<std::int32_t>(nodes_.size()) - 1;
+    used_[level] = 1;
   }
   void clear() {  // touches only the cells in use
-    for (const Node& node : nodes_) heads_[grid_->cell(node.sphere.centre)] = none;
+    for (const Node& node : nodes_) {
+      const std::size_t level = grids_->level(node.sphere.radius);
+      heads_[level][grids_->grid(level).cell(node.sphere.centre)] = none;
+    }
     nodes_.clear();
+    used_.assign(used_.size(), 0);
   }
   [[nodiscard]] bool empty() const noexcept { return nodes_.empty(); }
   void reserve(std::size_t count) { nodes_.reserve(count); }
 
-  /// True if `counts(tag)` for any sphere here that overlaps this one.
+  /// True if `counts(tag)` for any sphere here that overlaps this one. All here are of its level or larger ones'.
   template <class Counts>
   [[nodiscard]] bool any(const Sphere& sphere, Counts&& counts) const {
-    const CellGrid::Rows rows = grid_->rows(sphere.centre);
-    for (const std::size_t row : std::span(rows).first(grid_->row_count())) {
-      for (std::size_t cell = row; cell < row + 3; ++cell) {
-        for (std::int32_t k = heads_[cell]; k != none; k = nodes_[static_cast<std::size_t>(k)].next) {
-          const Node& node = nodes_[static_cast<std::size_t>(k)];
-          if (metric_.overlap(sphere, node.sphere) && counts(node.tag)) return true;
-        }
-      }
+    for (std::size_t level = 0; level <= grids_->level(sphere.radius); ++level) {
+      if (used_[level] != 0 && any_in(level, sphere, counts)) return true;
     }
     return false;
   }
@@ -100,15 +102,32 @@ class Bins {
   }
 
  private:
+  template <class Counts>
+  [[nodiscard]] bool any_in(std::size_t level, const Sphere& sphere, Counts&& counts) const {
+    const CellGrid& grid = grids_->grid(level);
+    const std::vector<std::int32_t>& heads = heads_[level];
+    const CellGrid::Rows rows = grid.rows(sphere.centre);
+    for (const std::size_t row : std::span(rows).first(grid.row_count())) {
+      for (std::size_t cell = row; cell < row + 3; ++cell) {
+        for (std::int32_t k = heads[cell]; k != none; k = nodes_[static_cast<std::size_t>(k)].next) {
+          const Node& node = nodes_[static_cast<std::size_t>(k)];
+          if (metric_.overlap(sphere, node.sphere) && counts(node.tag)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
   static constexpr std::int32_t none = -1;
   struct Node {
     Sphere sphere;
     std::int32_t next;
     std::int32_t tag;
   };
-  const CellGrid* grid_;
+  const CellGrids* grids_;
   Metric metric_;
-  std::vector<std::int32_t> heads_;
+  std::vector<std::vector<std::int32_t>> heads_;  // of each level
+  std::vector<char> used_;                        // levels with spheres
   std::vector<Node> nodes_;
 };
 

@@ -24,7 +24,7 @@ enum class Verdict : std::uint8_t { open, kept, rejected };
 class Conflicts {
  public:
   /// `placed` holds the spheres placed so far, foreign ones near the border too, and is extended by resolve().
-  Conflicts(const comm::Comm& comm, const CellGrid& grid, const Metric& metric, const Border& border,
+  Conflicts(const comm::Comm& comm, const CellGrids& grid, const Metric& metric, const Border& border,
             const Thrower& thrower, Bins& placed)
       : comm_(&comm), border_(&border), thrower_(&thrower), placed_(&placed), undecided_(grid, metric) {}
 

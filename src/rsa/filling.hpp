@@ -46,7 +46,7 @@ class Filling {
   const scene::Scene& scene_;
   LayerRegion region_;
   Thrower thrower_;
-  CellGrid grid_;
+  CellGrids grid_;
   Border border_;
   Bins placed_;  // of this layer, in this rank's columns and near them
   Conflicts conflicts_;

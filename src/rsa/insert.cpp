@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -69,7 +70,25 @@ void check_room(const scene::Scene& scene, const LayerRegion& region) {
 
 }  // namespace
 
+bool wide_classes(const scene::Sizes& sizes) {
+  constexpr double widest = 3.0;  // beyond it, equal differences would leave nearly all small ones in one class
+  return sizes.largest() > widest * sizes.smallest();
+}
+
+double class_bound(const scene::Sizes& sizes, int k) {
+  static_assert(size_classes == 8, "the ratio of a class is the eighth root, by three square roots");
+  const double step = std::sqrt(std::sqrt(std::sqrt(sizes.smallest() / sizes.largest())));
+  double bound = sizes.largest();
+  for (int n = 0; n < k; ++n) bound *= step;
+  return bound;
+}
+
 int size_class(const scene::Sizes& sizes, double radius) {
+  if (wide_classes(sizes)) {
+    int k = 0;
+    while (k + 1 < size_classes && radius <= class_bound(sizes, k + 1)) ++k;
+    return k;
+  }
   const double range = sizes.largest() - sizes.smallest();
   if (!(range > 0.0)) return 0;
   return std::clamp(static_cast<int>((sizes.largest() - radius) / range * size_classes), 0, size_classes - 1);

@@ -34,7 +34,11 @@ struct Insertion {
 /// room (CC16 example 5.4: a million darts do not suffice). Equal particles are all in class 0.
 inline constexpr int size_classes = 8;
 
-/// The class of a radius [m]: equal parts of [smallest, largest], 0 holds the largest.
+/// True if the classes have equal ratios of radius, not equal differences: radii of more than 1:3.
+[[nodiscard]] bool wide_classes(const scene::Sizes& sizes);
+/// The largest radius [m] of class k of wide classes.
+[[nodiscard]] double class_bound(const scene::Sizes& sizes, int k);
+/// The class of a radius [m]: equal parts of [smallest, largest] or of its logarithm, 0 holds the largest.
 [[nodiscard]] int size_class(const scene::Sizes& sizes, double radius);
 
 /// Collective. Throws every particle's first dart, then the second darts of those rejected, and so on, in the order

@@ -14,6 +14,10 @@ namespace {
 
 // Neighbour lists keep pairs up to skin beyond touching. The rate is flat between 0.075 and 0.1 r (doc/performance.md).
 constexpr double skin_per_radius = 0.1;
+// The same for the many small ones of a wide grading, by the mean radius.
+constexpr double skin_per_mean = 0.2;
+// Radii of more than this ratio are searched for by size (doc/performance.md, "Wide gradings").
+constexpr double alike = 2.5;
 
 [[noreturn]] void refuse(const input::Input& in, const std::string& words) {
   throw Error(ExitCode::bad_input, in.file + ": " + words);
@@ -99,6 +103,13 @@ Features features_of(const input::Input& in) {
   return f;
 }
 
+int size_levels(const Sizes& sizes) {
+  if (!(sizes.ratio() > alike)) return 1;
+  int levels = 1;
+  for (double r = 0.5 * sizes.largest(); r >= sizes.smallest() && levels < 32; r *= 0.5) ++levels;
+  return levels;
+}
+
 geometry::Box box_of(const input::Container& container) {
   geometry::Box box;
   box.dimension = container.dimension;
@@ -128,7 +139,8 @@ Scene build(const input::Input& in) {
   scene.sizes = Sizes(in.particles.radius, in.seed);
   scene.reach = 2.0 * scene.sizes.largest();
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
-  scene.skin = skin_per_radius * scene.sizes.largest();
+  scene.skin = std::min(skin_per_radius * scene.sizes.largest(), skin_per_mean * scene.sizes.mean());
+  scene.features.size_levels = size_levels(scene.sizes);
   scene.time_step =
       choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
   scene.settling = choose_settling(in, scene.sizes, scene.time_step);

@@ -18,6 +18,8 @@ struct Features {
   bool near_field = false;
   bool graded = false;    ///< radii differ
   bool periodic = false;  ///< any lateral axis
+  /// Classes of size for the neighbour search, each half as large as the one before; 1: radii are alike, one search
+  int size_levels = 1;
 
   [[nodiscard]] constexpr particles::Layout layout() const { return particles::layout_of(dimension, rotation); }
   friend constexpr bool operator==(const Features&, const Features&) = default;

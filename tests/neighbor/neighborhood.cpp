@@ -119,6 +119,11 @@ std::vector<input::Input> scenes() {
       all.push_back(test::periodic(in));
     }
   }
+  for (const int dimension : {2, 3}) {  // lists by size class
+    const auto wide = test::graded_input(dimension, 2.0, 0.005, 20.0);
+    all.push_back(wide);
+    all.push_back(test::periodic(wide));
+  }
   all.push_back(test::periodic(test::small_input(3, 2.0, 0.05)));
   all.back().near_field = input::NearField{1e-6, 2.0, 0.0, 0.0, 0.16};
   std::vector<input::Input> decomposed;
