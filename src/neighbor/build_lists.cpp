@@ -72,7 +72,7 @@ void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const
 }
 
 // `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
-void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const {
+void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) {
   const geometry::Box& box = scene_->box;
   const bool graded = scene_->features.graded && touching > 0.0;
   Search s{x_[0].data(),
@@ -87,6 +87,7 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
 
   std::size_t size = 0;
   LocalIndex window = 1;
+  std::int64_t looked_at = 0;
   std::vector<Run> runs;
   const auto levels = static_cast<std::size_t>(cells_.levels);
   for (int c = 0; c < columns_.own(); ++c) {
@@ -105,6 +106,7 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
         LocalIndex* const begin = list.second.data() + size;
         LocalIndex* out = find_in(s, i, i + 1, own_end, begin);
         for (const auto& [from, to] : runs) out = find_in(s, i, from, to, out);
+        looked_at += static_cast<std::int64_t>(candidates) - (i - cells_.start[column + k]) - 1;
         const auto found = static_cast<std::size_t>(out - begin);
         if (list.first.size() < size + found) {
           resize_tightly(list.first, size + found + 4096);
@@ -121,6 +123,7 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
   list.first.resize(size);
   list.second.resize(size);
   list.window = window;
+  if (touching > 0.0) candidates_ = looked_at;
 }
 
 void Neighborhood::build_walls(const particles::Store& store) {

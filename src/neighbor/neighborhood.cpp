@@ -63,6 +63,7 @@ void Neighborhood::rebuild(particles::Store& store) {
   remember_positions(store);
   if (scene_->features.size_levels > 1) {
     size_classes_.build({x_[0], x_[1], x_[2], radius_, store.owned()}, pairs_);
+    candidates_ = size_classes_.candidates();
   } else {
     build_pairs(store, 1.0, 0.0, pairs_);
   }

@@ -60,6 +60,8 @@ class Neighborhood {
   [[nodiscard]] const PairList& near_pairs() const noexcept { return near_pairs_; }  ///< near field; empty when off
   [[nodiscard]] const WallList& walls() const noexcept { return walls_; }
   [[nodiscard]] const Halo& halo() const noexcept { return halo_; }
+  /// Pairs of particles looked at for the contact lists in the last rebuild.
+  [[nodiscard]] std::int64_t candidates() const noexcept { return candidates_; }
   [[nodiscard]] std::int64_t rebuilds() const noexcept { return rebuilds_; }
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
 
@@ -77,7 +79,7 @@ class Neighborhood {
     LocalIndex begin, end;  // slots
   };
   void find_runs(int c, std::size_t k, std::vector<Run>& runs) const;
-  void build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) const;
+  void build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list);
   void build_walls(const particles::Store& store);
   [[nodiscard]] double largest_displacement(const particles::Store& store) const;  // this rank's [m]
 
@@ -97,7 +99,7 @@ class Neighborhood {
   std::array<std::vector<double>, 3> x_;
   std::vector<double> radius_;
   double drift_ = 0.0;  // bound of any displacement since the rebuild, this rank [m]
-  std::int64_t rebuilds_ = 0;
+  std::int64_t rebuilds_ = 0, candidates_ = 0;
 };
 
 }  // namespace packmpi::neighbor
