@@ -86,6 +86,20 @@ TEST(Insert, GaussianSpheresMixedAxes) {
       {1, 0.1, 0.4, 7});
 }
 
+// Wide size classes, and a grid of cells for each two of them.
+TEST(Insert, SmallOnesBetweenTwentyTimesLargerOnes) {
+  input::Radius radius;
+  radius.distribution = input::SizeDistribution::bidisperse;
+  radius.weighting = input::Weighting::mass;
+  radius.small = 0.0025;
+  radius.large = 0.05;
+  radius.large_share = 0.95;
+  expect_serial_result(rsa_scene(3, {0.5, 0.4, 0.5}, {false, true}, radius, 0.2, 10000), {2, 0.2, 0.25, 0});
+  radius = uniform_radius(0.004, 0.05);
+  radius.weighting = input::Weighting::mass;
+  expect_serial_result(rsa_scene(3, {0.5, 0.4, 0.5}, {false, true}, radius, 0.2, 10000), {2, 0.2, 0.25, 0});
+}
+
 TEST(Insert, WidelyGradedSpheres) {
   expect_serial_result(rsa_scene(3, {1.0, 1.0, 1.0}, {false, true}, uniform_radius(0.015, 0.045), 0.3, 10000),
                        {0, 0.0, 0.25, 0});

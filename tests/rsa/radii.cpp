@@ -261,6 +261,15 @@ TEST(Radii, ClassesFromTheLargestDown) {
   EXPECT_EQ(rsa::size_class(scene::Sizes(equal_radius(0.02), 1), 0.02), 0);
 }
 
+TEST(Radii, ClassesOfAWideRangeHaveEqualRatios) {
+  const scene::Sizes sizes(uniform_radius(0.001, 0.256), 1);  // a factor of two a class
+  EXPECT_EQ(rsa::size_class(sizes, 0.256), 0);
+  EXPECT_EQ(rsa::size_class(sizes, 0.129), 0);
+  EXPECT_EQ(rsa::size_class(sizes, 0.127), 1);
+  EXPECT_EQ(rsa::size_class(sizes, 0.0039), 6);
+  EXPECT_EQ(rsa::size_class(sizes, 0.001), 7);
+}
+
 TEST(Radii, ArePureFunctionsOfTheirNames) {
   const input::Radius radius = gaussian_radius(0.02, 0.002, 0.014, 0.026);
   const scene::Sizes sizes(radius, 42);
