@@ -10,7 +10,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libeigen3-dev
-  libhdf5-openmpi-dev libmetis-dev voro++-dev libgtest-dev libgmock-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+  libhdf5-openmpi-dev libmetis-dev voro++-dev libboost-dev libgtest-dev libgmock-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   libspdlog-dev librandom123-dev nlohmann-json3-dev)
 for option in "$@"; do
   case $option in

@@ -25,6 +25,7 @@ class Packmpi(CMakePackage):
     depends_on("petsc@3.18: +mpi ~complex +int64", when="+petsc64")
     depends_on("hdf5@1.10.2: +mpi")
     depends_on("metis@5:")
+    depends_on("boost@1.74: +math")
     depends_on("voropp@0.4.6:")
     depends_on("eigen@3.4:")
     depends_on("tomlplusplus@3.3:")

@@ -27,6 +27,7 @@ add_library(voro::voro UNKNOWN IMPORTED)
 set_target_properties(voro::voro PROPERTIES
   IMPORTED_LOCATION "${VORO_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${VORO_INCLUDE_DIR}")
 
+find_package(Boost 1.74 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(tomlplusplus 3.3 REQUIRED CONFIG)
 find_package(CLI11 2.1 REQUIRED CONFIG)
@@ -37,6 +38,6 @@ find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 
 # Private to the library: none of these is seen in include/.
 add_library(packmpi_private_libraries INTERFACE)
-target_link_libraries(packmpi_private_libraries INTERFACE PkgConfig::PETSC hdf5::hdf5 METIS::METIS voro::voro Eigen3::Eigen
+target_link_libraries(packmpi_private_libraries INTERFACE PkgConfig::PETSC hdf5::hdf5 METIS::METIS voro::voro Boost::headers Eigen3::Eigen
   tomlplusplus::tomlplusplus CLI11::CLI11 fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json)
 target_include_directories(packmpi_private_libraries SYSTEM INTERFACE ${RANDOM123_INCLUDE_DIR})

@@ -51,6 +51,14 @@ Comm::Comm(MPI_Comm parent) {
   MPI_Comm_size(comm_, &size_);
 }
 
+Comm Comm::split(int color) const {
+  MPI_Comm part = MPI_COMM_NULL;
+  MPI_Comm_split(comm_, color, rank_, &part);
+  Comm result(part);
+  MPI_Comm_free(&part);
+  return result;
+}
+
 Comm::~Comm() {
   if (comm_ != MPI_COMM_NULL) MPI_Comm_free(&comm_);
 }

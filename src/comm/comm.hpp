@@ -33,6 +33,9 @@ class Comm {
   Comm(const Comm&) = delete;
   Comm& operator=(const Comm&) = delete;
 
+  /// Collective. The communicator of those ranks that give the same `color` (>= 0), in the order of their ranks here.
+  [[nodiscard]] Comm split(int color) const;
+
   [[nodiscard]] Rank rank() const noexcept { return rank_; }
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] MPI_Comm handle() const noexcept { return comm_; }

@@ -110,7 +110,7 @@ struct Parallel {
   Decomposition decomposition = Decomposition::slab;
 };
 
-struct Ensemble {  ///< only 1 x 1 in this version
+struct Ensemble {
   int sets = 1, packs = 1;
 };
 

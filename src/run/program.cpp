@@ -12,6 +12,7 @@
 #include "output/report.hpp"
 #include "run/analyze.hpp"
 #include "run/convert.hpp"
+#include "run/ensemble.hpp"
 #include "run/files.hpp"
 #include "run/info.hpp"
 #include "run/make_pack.hpp"
@@ -90,6 +91,8 @@ int act(const comm::Comm& comm, const Options& options) {
   }
   const input::Input in = input::read(comm, options.scene, options.overrides);
   comm::petsc_options(in.petsc.options);
+  if (options.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
+    return make_ensemble(comm, in, options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   warn_of_step(scene);
   return options.command == Command::check ? check(comm, scene) : make(comm, scene, options);

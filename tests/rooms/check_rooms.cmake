@@ -14,6 +14,7 @@ set(libraries
   "Random123/.*=base"
   "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"
   "voro[+][+]/.*=observe"
+  "boost/.*=output"
   "nlohmann/.*=base output run")
 
 function(report where text)
