@@ -114,7 +114,7 @@ std::string flaw(const Curve& curve) {
 }
 
 Curve kept_curve(const Radius& radius) {
-  const auto [from, to] = radius.keep_percent;
+  const double from = radius.keep_percent[0], to = radius.keep_percent[1];
   if (from == 0.0 && to == 100.0) return radius.diameter_curve;
   const auto rescaled = [&](double percent) { return 100.0 * ((percent - from) / (to - from)); };
   Curve kept{{diameter_at(radius.diameter_curve, radius.interpolation, from), 0.0}};

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "input/document.hpp"
+
 namespace packmpi::input {
 namespace {
 
@@ -90,7 +92,9 @@ Scalar parse_scalar(std::string_view text, const Quantity& quantity) {
     return {{}, "is too large or too small for a double; give a number within 1e-300 to 1e300"};
   }
   if (unit.empty()) return {{}, fmt::format("has no unit; add {}, or remove the quotes", list(quantity.units))};
-  return {{}, fmt::format("has the unit \"{}\", which does not fit here; use {}", unit, list(quantity.units))};
+  return {{},
+          fmt::format("has the unit {}, which does not fit here; use {}", toml_string(unit.substr(0, 60)),
+                      list(quantity.units))};
 }
 
 std::string number(double value) {
