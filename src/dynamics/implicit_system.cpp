@@ -24,7 +24,9 @@ struct Axes {
   int velocities, spins, first_spin;
   explicit Axes(const particles::Layout& layout)
       : velocities(layout.dimension), spins(layout.spin_components()), first_spin(layout.dimension == 3 ? 0 : 2) {}
-  [[nodiscard]] std::size_t spin(int c) const { return static_cast<std::size_t>(first_spin + c); }
+  [[nodiscard]] std::size_t spin(int c) const {
+    return static_cast<std::size_t>(first_spin) + static_cast<std::size_t>(c);
+  }
 };
 
 // All interactions of the lists, `near` for those of the near field.
@@ -159,7 +161,7 @@ Mat ImplicitSystem::make_matrix() const {
   check_petsc(MatCreateBAIJ(comm_.handle(), unknowns(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, 0, here.data(), 0,
                             there.data(), &matrix));
   // Every listed pair has its blocks from the start: an assembly drops the room that nobody has used.
-  const std::vector<double> zeros(static_cast<std::size_t>(unknowns() * unknowns()), 0.0);
+  const std::vector<double> zeros(static_cast<std::size_t>(unknowns()) * static_cast<std::size_t>(unknowns()), 0.0);
   const auto reserve = [&](LocalIndex i, LocalIndex j) {
     const auto row = static_cast<PetscInt>(row_[static_cast<std::size_t>(i)]);
     const auto column = static_cast<PetscInt>(row_[static_cast<std::size_t>(j)]);
@@ -182,7 +184,10 @@ void ImplicitSystem::jacobian(Mat matrix) const {
   const Axes axes(store_.layout());
   const int n = unknowns();
   const double step = theta_ * time_step_;
-  std::vector<double> block(static_cast<std::size_t>(n * n));
+  const auto at = [n](int r, int c) {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(n) + static_cast<std::size_t>(c);
+  };
+  std::vector<double> block(at(n, 0));
   const auto put = [&](LocalIndex i, LocalIndex j) {
     const auto row = static_cast<PetscInt>(row_[static_cast<std::size_t>(i)]);
     const auto column = static_cast<PetscInt>(row_[static_cast<std::size_t>(j)]);
@@ -201,24 +206,24 @@ void ImplicitSystem::jacobian(Mat matrix) const {
         const Derivatives& by = value.derivatives();
         const double slope =
             velocity ? other * (step * by[c] + by[3 + c]) : by[6 + static_cast<int>(axes.spin(c - axes.velocities))];
-        block[static_cast<std::size_t>(r * n + c)] = factor * slope;
+        block[at(r, c)] = factor * slope;
       }
     }
     put(i, j);
   };
-  const auto all = [&](const Interaction& at, const std::optional<ContactForce<Dual>>& f) {
+  const auto all = [&](const Interaction& pair, const std::optional<ContactForce<Dual>>& f) {
     if (!f) return;
-    add(at.first, 1.0, at.first, -1.0, *f);
-    add(at.first, 1.0, at.second, 1.0, *f);
-    add(at.second, -1.0, at.first, -1.0, *f);
-    add(at.second, -1.0, at.second, 1.0, *f);
+    add(pair.first, 1.0, pair.first, -1.0, *f);
+    add(pair.first, 1.0, pair.second, 1.0, *f);
+    add(pair.second, -1.0, pair.first, -1.0, *f);
+    add(pair.second, -1.0, pair.second, 1.0, *f);
   };
   check_petsc(MatZeroEntries(matrix));
   for (LocalIndex i = 0; i < store_.owned(); ++i) {
     std::ranges::fill(block, 0.0);
     for (int c = 0; c < n; ++c) {
       const double drag = c < axes.velocities ? scene_.in.drag.coefficient * inverse_mass(law_, store_, i) : 0.0;
-      block[static_cast<std::size_t>(c * n + c)] = 1.0 + step * drag;
+      block[at(c, c)] = 1.0 + step * drag;
     }
     put(i, i);
   }

@@ -39,20 +39,14 @@ Profile density_profile(const Specimen& pack, int axis) {
     if (!vertical && !in_bulk(pack.scene, x[static_cast<std::size_t>(box.vertical())])) continue;
     const auto first = static_cast<std::ptrdiff_t>(std::floor((x[a] - r) / profile.width));
     const auto last = static_cast<std::ptrdiff_t>(std::floor((x[a] + r) / profile.width));
-    for (std::ptrdiff_t k = first; k <= last; ++k) {  // beyond a side: periodic, the other side; else it is in the wall
-      const auto n = static_cast<std::ptrdiff_t>(bins);
-      if (!vertical && box.periodic[a] && (k < 0 || k >= n)) {
-        const std::ptrdiff_t other = (k + n) % n;
-        const double low = static_cast<double>(k) * profile.width;
-        terms[static_cast<std::size_t>(other)].push_back(
-            geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
-            geometry::volume_below(box.dimension, r, x[a], low));
-      } else if (k >= 0 && k < n) {
-        const double low = static_cast<double>(k) * profile.width;
-        terms[static_cast<std::size_t>(k)].push_back(
-            geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
-            geometry::volume_below(box.dimension, r, x[a], low));
-      }
+    const auto n = static_cast<std::ptrdiff_t>(bins);
+    for (std::ptrdiff_t k = first; k <= last; ++k) {
+      const bool beyond = k < 0 || k >= n;
+      if (beyond && (vertical || !box.periodic[a])) continue;  // inside a wall
+      const double low = static_cast<double>(k) * profile.width;
+      const double slice = geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
+                           geometry::volume_below(box.dimension, r, x[a], low);
+      terms[static_cast<std::size_t>((k + n) % n)].push_back(slice);
     }
   }
   profile.values = comm::exact_sums(pack.comm, terms);
