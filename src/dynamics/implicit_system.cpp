@@ -184,10 +184,10 @@ void ImplicitSystem::jacobian(Mat matrix) const {
   const Axes axes(store_.layout());
   const int n = unknowns();
   const double step = theta_ * time_step_;
-  const auto at = [n](int r, int c) {
+  const auto entry = [n](int r, int c) {
     return static_cast<std::size_t>(r) * static_cast<std::size_t>(n) + static_cast<std::size_t>(c);
   };
-  std::vector<double> block(at(n, 0));
+  std::vector<double> block(entry(n, 0));
   const auto put = [&](LocalIndex i, LocalIndex j) {
     const auto row = static_cast<PetscInt>(row_[static_cast<std::size_t>(i)]);
     const auto column = static_cast<PetscInt>(row_[static_cast<std::size_t>(j)]);
@@ -206,7 +206,7 @@ void ImplicitSystem::jacobian(Mat matrix) const {
         const Derivatives& by = value.derivatives();
         const double slope =
             velocity ? other * (step * by[c] + by[3 + c]) : by[6 + static_cast<int>(axes.spin(c - axes.velocities))];
-        block[at(r, c)] = factor * slope;
+        block[entry(r, c)] = factor * slope;
       }
     }
     put(i, j);
@@ -223,7 +223,7 @@ void ImplicitSystem::jacobian(Mat matrix) const {
     std::ranges::fill(block, 0.0);
     for (int c = 0; c < n; ++c) {
       const double drag = c < axes.velocities ? scene_.in.drag.coefficient * inverse_mass(law_, store_, i) : 0.0;
-      block[at(c, c)] = 1.0 + step * drag;
+      block[entry(c, c)] = 1.0 + step * drag;
     }
     put(i, i);
   }
