@@ -1,14 +1,15 @@
 #!/usr/bin/python3
-"""Kills runs at random moments with SIGKILL, goes on from what is left, and compares the packs with that of an untouched run.
+"""Kills runs at random moments with SIGKILL, takes their folder away, goes on from what is left, and compares the packs with
+that of an untouched run.
 
-  scripts/faults.py [-n TRIALS] [--build FOLDER] [--doc doc/reliability.md]
+  scripts/faults.py [-n KILLS] [--build FOLDER] [--table FILE]
 
-Every trial starts `packmpi --restart auto` on 1 to 3 ranks, kills it after a random part of an untouched run's time (mpirun
-and all ranks, or one rank alone), does so once more, and then lets it end. Exit code 0: every trial ended with the
-particle datasets of the untouched run. With --doc the counts replace the part between the page's "faults" markers.
+Every trial starts `packmpi --restart auto` on 1 to 3 ranks and kills it at a random moment (mpirun and all ranks, one rank, or
+mpirun alone), does so once more, and then lets it end; trials go on until there were KILLS kills. A few more have their folder
+renamed or removed while they run. Exit code 0: every trial ended with the particle datasets of the untouched run. The counts are
+printed as a table, and written to FILE.
 """
 import argparse
-import datetime
 import hashlib
 import os
 import random
@@ -50,10 +51,9 @@ time_step = 1.0e-4
 window = 2
 thaw = 0.2
 [checkpoint]
-every = "100 steps"
+every = "25 steps"
 """
-BEGIN, END = "<!-- faults: begin -->", "<!-- faults: end -->"
-KILLS_A_TRIAL = 2
+DISTURBANCES_A_TRIAL = 2
 ATTEMPTS = 12   # starts a trial may take
 
 
@@ -79,14 +79,16 @@ def children(pid):
     return [int(word) for word in out.split()]
 
 
-def kill(process, counts):
-    """One rank, or mpirun and all ranks; nothing if the run is over."""
+def kill(process, folder, counts):
+    """One rank, mpirun, or mpirun and all ranks; nothing if the run is over."""
     ranks = children(process.pid)
     if process.poll() is not None or not ranks:
         counts["runs over before the kill"] += 1
         return
-    victims = [random.choice(ranks)] if random.random() < 0.5 else [process.pid, *ranks]
-    counts["kills of one rank alone" if len(victims) == 1 else "kills of mpirun and all ranks"] += 1
+    what = random.choice(["one rank alone", "mpirun alone", "mpirun and all ranks"])
+    victims = {"one rank alone": [random.choice(ranks)], "mpirun alone": [process.pid]}.get(what, [process.pid, *ranks])
+    counts[f"kills of {what}"] += 1
+    counts["kills"] += 1
     for pid in victims:
         try:
             os.kill(pid, signal.SIGKILL)
@@ -94,19 +96,46 @@ def kill(process, counts):
             pass
     process.wait()
     for pid in ranks:   # without mpirun nobody waits for them: the next start must find the folder at peace
-        while Path(f"/proc/{pid}").exists() and "Z" not in Path(f"/proc/{pid}/stat").read_text().split(")")[1][:3]:
+        for _ in range(6000):
+            status = Path(f"/proc/{pid}/stat")
+            try:
+                if status.read_text().rsplit(")", 1)[1].split()[0] == "Z":
+                    break
+            except OSError:
+                break
             time.sleep(0.01)
+        else:
+            counts["ranks that did not end"] += 1
+            os.kill(pid, signal.SIGKILL)
+    counts["of all kills, in the middle of writing a file"] += bool(list(Path(folder).glob("*.tmp")))
 
 
-def trial(program, scene, folder, length, counts):
+def take_away(process, folder, counts):
+    """The folder under another name, and back when the run has ended; or removed."""
+    if process.poll() is not None or not Path(folder).exists():
+        counts["runs over before the kill"] += 1
+        return
+    elsewhere = Path(f"{folder}.elsewhere")
+    removed = random.random() < 0.5
+    counts["folders removed in mid-run" if removed else "folders renamed in mid-run"] += 1
+    os.rename(folder, elsewhere)
+    counts["of them ended with code 5"] += process.wait() == 5
+    shutil.rmtree(folder, ignore_errors=True)
+    if removed:
+        shutil.rmtree(elsewhere)
+    else:
+        os.rename(elsewhere, folder)
+
+
+def trial(program, scene, folder, length, disturb, counts):
     """True if the trial ended with a finished run."""
     shutil.rmtree(folder, ignore_errors=True)
     for attempt in range(ATTEMPTS):
         process = start(program, scene, folder, random.randint(1, 3))
         counts["restarts, on 1 to 3 ranks"] += attempt > 0
-        if attempt < KILLS_A_TRIAL:
-            time.sleep(random.uniform(0.2, length))
-            kill(process, counts)
+        if attempt < DISTURBANCES_A_TRIAL:
+            time.sleep(random.uniform(0.35, 0.35 + 0.6 * length))
+            disturb(process, folder, counts)
         elif process.wait() == 0:
             return True
         if digest(folder) is not None and not list(Path(folder).glob("*.ckpt.*")):
@@ -114,12 +143,18 @@ def trial(program, scene, folder, length, counts):
     return False
 
 
+ROWS = ["trials", "kills", "kills of mpirun and all ranks", "kills of one rank alone", "kills of mpirun alone",
+        "of all kills, in the middle of writing a file", "folders renamed in mid-run", "folders removed in mid-run",
+        "of them ended with code 5", "runs over before the kill", "ranks that did not end", "restarts, on 1 to 3 ranks",
+        "survived, the same bits", "lost", "wrong accepted"]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-n", type=int, default=200)
     parser.add_argument("--build", default=ROOT / "build")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--doc")
+    parser.add_argument("--table")
     options = parser.parse_args()
     random.seed(options.seed)
     program = Path(options.build).resolve() / "packmpi"
@@ -132,23 +167,21 @@ def main():
             sys.exit("faults: the untouched run failed")
         length = time.time() - begin
         whole = digest(Path(work) / "whole")
-        for number in range(1, options.n + 1):
+        folders = max(1, options.n // 20)   # trials that lose their folder
+        while counts["kills"] < options.n or counts["trials"] < folders:
             folder = Path(work) / "run"
-            ended = trial(program, scene, folder, length, counts)
+            disturb = take_away if counts["trials"] < folders else kill
+            counts["trials"] += 1
+            ended = trial(program, scene, folder, length, disturb, counts)
             result = ("survived, the same bits" if digest(folder) == whole else "wrong accepted") if ended else "lost"
             counts[result] += 1
             if result != "survived, the same bits":
-                print(f"trial {number}: {result}")
-    rows = ["kills of mpirun and all ranks", "kills of one rank alone", "runs over before the kill", "restarts, on 1 to 3 ranks",
-            "survived, the same bits", "lost", "wrong accepted"]
-    table = "\n".join(["| what | count |", "|---|---|", f"| trials | {options.n} |"] + [f"| {row} | {counts[row]} |" for row in rows])
+                print(f"trial {counts['trials']}: {result}")
+    table = "\n".join(["| what | count |", "|---|---|"] + [f"| {row} | {counts[row]} |" for row in ROWS])
     print(table)
-    if options.doc:
-        commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], text=True, capture_output=True, check=False).stdout.strip()
-        head, rest = Path(options.doc).read_text().split(BEGIN)
-        text = f"`scripts/faults.py -n {options.n}`, {datetime.date.today()}, commit {commit}:\n\n{table}"
-        Path(options.doc).write_text(f"{head}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
-    sys.exit(0 if counts["survived, the same bits"] == options.n else 1)
+    if options.table:
+        Path(options.table).write_text(table + "\n")
+    sys.exit(0 if counts["survived, the same bits"] == counts["trials"] else 1)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ foreach(ranks 1 2)
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS "system;np${ranks}")
 endforeach()
 if(PACKMPI_SYSTEM_PYTHON AND NOT PACKMPI_SANITIZE)   # the short version of scripts/faults.py
-  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 4
+  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 2
     --build ${PROJECT_BINARY_DIR})
   set_tests_properties(system/faults PROPERTIES PROCESSORS 2 TIMEOUT 240 SKIP_RETURN_CODE 77
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS system)
