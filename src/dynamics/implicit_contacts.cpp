@@ -11,7 +11,7 @@ Vec3 surface_spin(const particles::Store& store, LocalIndex i) {
   Vec3 s{};
   const int first = layout.dimension == 3 ? 0 : 2;
   for (int c = 0; c < layout.spin_components(); ++c) {
-    s[static_cast<std::size_t>(first + c)] = store.record(i)[layout.spin + c];
+    s[static_cast<std::size_t>(first) + static_cast<std::size_t>(c)] = store.record(i)[layout.spin + c];
   }
   return s;
 }

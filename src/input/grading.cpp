@@ -38,7 +38,7 @@ std::string unit_of(const std::string& head, const Line& line) {
   const std::string words =
       fmt::format("is {}; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)", toml_string(head));
   if (!head.starts_with(begin) || !head.ends_with(head_end)) line.refuse(words);
-  const std::string unit = head.substr(begin.size(), head.size() - begin.size() - head_end.size());
+  std::string unit = head.substr(begin.size(), head.size() - begin.size() - head_end.size());
   if (!parse_scalar("1 " + unit, length).value) line.refuse(words);
   return unit;
 }
