@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -333,8 +332,10 @@ std::string all_in(const std::string& text) {
   std::istringstream lines(text);
   std::string out;
   for (std::string line; std::getline(lines, line);) {
-    const bool key = std::regex_match(line, std::regex(R"(# [a-z_0-9]+ = .*)"));
-    out += key && line.find("# only if") == std::string::npos ? line.substr(2) + "\n" : line + "\n";
+    const std::size_t name_end = line.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", 2);
+    const bool key = line.starts_with("# ") && name_end > 2 && name_end != std::string::npos &&
+                     line.compare(name_end, 3, " = ") == 0 && line.find("# only if") == std::string::npos;
+    out += (key ? line.substr(2) : line) + "\n";
   }
   return out;
 }
