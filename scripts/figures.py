@@ -8,12 +8,9 @@ are not repeated. 3D needs a virtual screen: scripts/setup.sh --render.
 """
 import argparse
 import os
-import subprocess
-import sys
 from pathlib import Path
 
-from PIL import Image   # comes with matplotlib
-
+import common
 import reproduce
 
 SEED = 1
@@ -24,19 +21,16 @@ FIGURES = {("5.1", "on"): 4, ("5.1", "off"): 5, ("5.2", "on"): 6, ("5.2", "off")
 
 def draw(run, number, images, size):
     """Coloured by the layer a particle came with, equal radii; by radius, graded ones; discs with their force chains."""
-    path = images / f"figure_{number}.png"
-    command = [sys.executable, reproduce.ROOT / "scripts" / "render.py", run.folder / f"{run.name}.hdf", "-o", path,
-               "--size", str(size)]
-    if subprocess.run(command).returncode != 0:
-        reproduce.fail(f"figure {number} could not be drawn")
-    Image.open(path).quantize(200).save(path, optimize=True)   # a third of the bytes, for the repository
+    wrong = common.picture_of(run.folder / f"{run.name}.hdf", images / f"figure_{number}.png", "--size", size)
+    if wrong:
+        common.fail(f"figure {number} could not be drawn: {wrong}")
 
 
 def main():
     parser = argparse.ArgumentParser(description="Redraw the paper's figures 4 to 11.")
-    parser.add_argument("--program", type=Path, default=reproduce.ROOT / "build" / "packmpi")
-    parser.add_argument("--results", type=Path, default=reproduce.ROOT / "results" / "figures")
-    parser.add_argument("--images", type=Path, default=reproduce.ROOT / "doc" / "images")
+    parser.add_argument("--program", type=Path, default=common.ROOT / "build" / "packmpi")
+    parser.add_argument("--results", type=Path, default=common.ROOT / "results" / "figures")
+    parser.add_argument("--images", type=Path, default=common.ROOT / "doc" / "images")
     parser.add_argument("--size", type=int, default=700, help="width in pixels, about (default 700)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
     options = parser.parse_args()

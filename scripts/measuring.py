@@ -1,17 +1,13 @@
 """What the scripts that measure packs share: the fast protocols by name, one analysis for the packs of any code, where and
 when something was measured, and how a block of a document is written anew."""
 import datetime
-import os
 import statistics
 import subprocess
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
-ENVIRONMENT = {**{"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",   # as scripts/mpi_env.sh
-                  "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-                  "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}, **os.environ}
+from common import ENVIRONMENT, ROOT  # noqa: F401  (for the scripts that measure)
 
 # What a pack may differ by from the reference protocol's, at equal inserted mass.
 BOUNDS = {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}
@@ -58,9 +54,9 @@ def read_dump(path):
 
 def read_pack(path):
     """Positions and radii of a pack file."""
-    import h5py
-    with h5py.File(path) as pack:
-        return pack["particles/position"][:], pack["particles/radius"][:]
+    from packs import Pack
+    pack = Pack(path)
+    return pack.position, pack.radius
 
 
 def commit():

@@ -8,66 +8,20 @@ A 2D pack with /contacts (output.contacts = true) gets its force chains, lines a
 """
 import argparse
 import os
-import sys
 
-NEEDS = "install it with: scripts/setup.sh --render"
-INK = "#222222"
-ACCENT = "#d1495b"  # the height asked
-BACKGROUND = "#ffffff"
-
-
-def fail(words):
-    sys.exit(f"render: {words}")
-
+from common import ACCENT, BACKGROUND, INK, fail, missing
 
 try:
-    import h5py
     import matplotlib
     import numpy as np
 except ImportError as error:
-    fail(f"the Python package {error.name} is missing for {sys.executable}; {NEEDS}")
+    missing(error.name, "render")
 matplotlib.use("Agg")
 from matplotlib import colors, pyplot as plt  # noqa: E402  (after the choice of the backend)
 from matplotlib.cm import ScalarMappable  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
 
-
-class Pack:
-    """The parts of a pack file that a picture needs; doc/file_format.md."""
-
-    def __init__(self, path):
-        try:
-            with h5py.File(path, "r") as file:
-                if file.attrs.get("format") not in (b"packmpi-pack", "packmpi-pack"):
-                    fail(f"{path} is not a pack of packmpi (root attribute 'format')")
-                self.read(file)
-        except OSError as error:
-            fail(f"cannot read {path}: {error}")
-        except KeyError as error:
-            fail(f"{path} is incomplete: {error}")
-
-    def read(self, file):
-        particles, asked = file["particles"], file["summary"].attrs
-        self.position = particles["position"][:]
-        self.radius = particles["radius"][:]
-        self.layer = particles["layer"][:]
-        self.contacts = particles["contacts"][:]
-        self.speed = np.linalg.norm(particles["velocity"][:], axis=1)
-        self.size = np.array(asked["size"], dtype=float)  # lateral extents, then the height asked [m]
-        self.dimension = int(asked["dimension"])
-        self.phi, self.phi_bulk = float(asked["phi"]), float(asked["phi_bulk"])
-        self.pairs = file["contacts/pair"][:] if "contacts" in file else None
-        self.forces = file["contacts/force"][:] if "contacts" in file else None
-
-    @property
-    def count(self):
-        return len(self.radius)
-
-    def top(self):
-        """Highest particle top, at least the height asked [m]."""
-        vertical = self.dimension - 1
-        highest = (self.position[:, vertical] + self.radius).max() if self.count else 0.0
-        return max(highest, self.size[vertical])
+from packs import Pack  # noqa: E402
 
 
 def softened(name):
@@ -129,9 +83,8 @@ class Colouring:
 
 
 def caption(pack):
-    noun = "spheres" if pack.dimension == 3 else "discs"
     size = " x ".join(f"{length:g}" for length in pack.size)
-    return (f"{pack.count:,} {noun} in {size} m,  "
+    return (f"{pack.count:,} {pack.noun} in {size} m,  "
             rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}")
 
 

@@ -6,14 +6,7 @@ import sys
 import numpy as np
 from matplotlib import colors
 
-NEEDS = "install it with: scripts/setup.sh --render"
-INK = "#222222"
-ACCENT = "#d1495b"  # the height asked
-BACKGROUND = "#ffffff"
-
-
-def fail(words):
-    sys.exit(f"render: {words}")
+from common import ACCENT, BACKGROUND, INK, fail, missing
 
 
 def use_virtual_screen():
@@ -21,7 +14,7 @@ def use_virtual_screen():
     if os.environ.get("DISPLAY"):
         return
     if not shutil.which("xvfb-run") or not shutil.which("xauth"):
-        fail(f"there is no X screen, and no xvfb-run and xauth to make one; {NEEDS}")
+        fail("there is no X screen, and no xvfb-run and xauth to make one; install them with: scripts/setup.sh --render")
     sys.stdout.flush()
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 640x480x24", sys.executable] + sys.argv)
 
@@ -31,7 +24,7 @@ def import_vtk():
         import vtk
         from vtk.util import numpy_support
     except ImportError as error:
-        fail(f"the Python package {error.name} (VTK) is missing for {sys.executable}; {NEEDS}")
+        missing(f"{error.name} (VTK)", "render")
     return vtk, numpy_support
 
 

@@ -17,27 +17,15 @@ import time
 from pathlib import Path
 
 import reproduction_report as report
+from common import ENVIRONMENT, ROOT, fail
 
-ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ("5.1", "5.2", "5.3", "5.4")
 USUAL_SECONDS = {"5.1": 3.0, "5.2": 3.0, "5.3": 30.0, "5.4": 35.0}  # for the first estimates of the time left only
-MPI_ENVIRONMENT = {  # as scripts/mpi_env.sh
-    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_mpi_yield_when_idle": "1",
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
-
-
-def fail(words):
-    sys.exit(f"reproduce: {words}")
-
-
-def environment():
-    return {**MPI_ENVIRONMENT, **os.environ}
 
 
 def output_of(*command):
     """Standard output of a command, or None if it fails."""
-    done = subprocess.run(command, cwd=ROOT, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(command, cwd=ROOT, env=ENVIRONMENT, capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 
 
@@ -141,7 +129,7 @@ def make(runs, program, jobs):
                 run.folder.mkdir(parents=True, exist_ok=True)
                 run.summary.unlink(missing_ok=True)  # an old one must not pass for this one's
                 log = open(run.folder / "output.txt", "w")
-                active[run] = subprocess.Popen(run.command(program), cwd=ROOT, env=environment(), stdout=log,
+                active[run] = subprocess.Popen(run.command(program), cwd=ROOT, env=ENVIRONMENT, stdout=log,
                                                stderr=log)
                 log.close()
             for run, process in list(active.items()):

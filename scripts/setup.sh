@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
-# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers]
+# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers] [--report]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
 #   --peers   also LAMMPS and LIGGGHTS, to compare with
 #   --readers also LAMMPS, LIGGGHTS, YADE and VTK, which read packs that were converted for them
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
+#   --report  also what --render brings, and Chromium, in which the test of scripts/report.py reads its page
 #   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/check.sh
 set -euo pipefail
@@ -18,9 +19,10 @@ for option in "$@"; do
     --peers) packages+=(python3 python3-numpy python3-scipy python3-h5py lammps liggghts) ;;
     --readers) packages+=(python3 python3-h5py python3-vtk9 lammps liggghts yade) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
+    --report) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth chromium fonts-dejavu-core) ;;
     --site) packages+=(mkdocs mkdocs-material) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;
-    *) sed -n '2,9s/^# //p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,10s/^# //p' "$0" >&2; exit 2 ;;
   esac
 done
 

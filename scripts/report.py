@@ -1,0 +1,308 @@
+#!/usr/bin/python3
+"""One page on a pack, for eyes and for an archive: NAME.html, pictures and plots inside, nothing fetched from elsewhere.
+
+usage: scripts/report.py PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
+
+Facts, pictures, plots, asked beside got, protocol, checks and provenance. Needs what scripts/setup.sh --render installs;
+a picture that cannot be drawn is left out, and the page says why. The numbers are those of the pack and of
+`packmpi analyze`; the history is NAME.steps.csv.
+"""
+import argparse
+import base64
+import html
+import tempfile
+from pathlib import Path
+
+import plot   # says what is missing
+from common import ACCENT, BACKGROUND, GOT, GRID, INK, OTHER, fail, picture_of
+import numpy as np
+import packs
+
+STYLE = Path(__file__).parent / "report.css"
+# What a plot's colours become on a dark page.
+DARK = {INK: "#d8dee4", GRID: "#333b43", ACCENT: "#ff8a98", GOT: "#4fc3d4", OTHER: "#7d8b99"}
+
+
+def number(value, digits=4):
+    """A number for people: thousands apart, powers of ten beyond four places."""
+    if value is None or (isinstance(value, float) and not np.isfinite(value)):
+        return "–"
+    if isinstance(value, (int, np.integer)):
+        return f"{value:,}".replace(",", " ")
+    if value != 0.0 and not 1e-3 <= abs(value) < 1e5:
+        mantissa, power = f"{value:.{digits - 1}e}".split("e")
+        if "." in mantissa:
+            mantissa = mantissa.rstrip("0").rstrip(".")
+        return f"{mantissa}&nbsp;×&nbsp;10<sup>{int(power)}</sup>".replace("-", "−")
+    return f"{value:.{digits}g}".replace("-", "−")
+
+
+def quantity(value, unit="", digits=4):
+    return f"{number(value, digits)}&nbsp;{unit}" if unit else number(value, digits)
+
+
+def percent(got, asked):
+    return f"{100.0 * (got / asked - 1.0):+.2f}&nbsp;%".replace("-", "−") if asked else "–"
+
+
+def table(heads, rows, label):
+    """`rows` of ready HTML; the first cell of a row is its head. A row of one cell parts the table."""
+    out = [f'<div class="wide"><table aria-label="{label}"><thead><tr>']
+    out += [f"<th>{head}</th>" for head in heads] + ["</tr></thead><tbody>"]
+    for row in rows:
+        if len(row) == 1:
+            out.append(f'<tr class="part"><th colspan="{len(heads)}">{row[0]}</th></tr>')
+        else:
+            out.append(f"<tr><th>{row[0]}</th>" + "".join(f"<td>{cell}</td>" for cell in row[1:]) + "</tr>")
+    return "".join(out) + "</tbody></table></div>"
+
+
+def listed(pairs):
+    return "<dl>" + "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in pairs) + "</dl>"
+
+
+def section(name, title, *parts):
+    return f'<section id="{name}"><h2>{title}</h2>{"".join(part for part in parts if part)}</section>'
+
+
+def inline(path, kind, words, style=""):
+    data = base64.b64encode(Path(path).read_bytes()).decode()
+    return f'<img{style} alt="{html.escape(words)}" src="data:image/{kind};base64,{data}">'
+
+
+# --- what the page says ---
+
+def facts(pack, analysis):
+    """The few numbers everybody looks for, large."""
+    got = pack.summary
+    tiles = [(number(pack.count), pack.noun), (f"{pack.phi_bulk:.4f}", "solid fraction of the bulk"),
+             (f"{got['coordination']:.2f}", "touching neighbours"), (f"{got['height']:.4g} m", f"high; {pack.size[-1]:g} m asked"),
+             (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
+             (f"{got['floor_force'] / got['weight']:.3f}" if got["weight"] else "–", "of the weight on the floor")]
+    tiles = [f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles]
+    return f'<div class="tiles">{"".join(tiles)}</div>'
+
+
+def pictures(pack, folder, pixels):
+    """The pack from outside: sizes, or layers if they are equal; 3D also by contacts, discs with their force chains."""
+    wanted = [("Coloured by size" if np.ptp(pack.radius) > 0.0 else "Coloured by layer of insertion", [])]
+    if pack.dimension == 2 and pack.pairs is not None:
+        wanted = [(wanted[0][0] + ", with force chains: lines as thick as the contact forces", [])]
+    wanted.append(("Coloured by the number of touching neighbours", ["--color", "contacts", "--no-chains"]))
+    out = []
+    for k, (words, options) in enumerate(wanted):
+        path = folder / f"picture_{k}.png"
+        wrong = picture_of(pack.path, path, "--size", pixels, *options)
+        out.append(f'<p class="note">No picture: {html.escape(wrong)}</p>' if wrong else
+                   f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>')
+        if wrong:
+            break
+    if pack.dimension == 2 and pack.pairs is None:
+        out.append('<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>')
+    return f'<div class="pair">{"".join(out)}</div>'
+
+
+CAPTIONS = {
+    "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the height asked.",
+    "sizes": "Sizes asked for (dashed) and got, as sieves would show them.",
+    "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
+    "settling": "How the layers settled; energies are those of the particles that move."}
+
+MISSING = {
+    "density": "No density profile.", "sizes": "All radii are equal: no size curves.",
+    "pairs": "The pack is too small for a pair distribution.",
+    "settling": "No history: the time series NAME.steps.csv is not beside the pack."}
+
+
+def plots(pack, analysis, folder):
+    out = []
+    for name, words in CAPTIONS.items():
+        path = folder / f"{name}.svg"
+        if not plot.draw(name, pack, analysis, path):
+            out.append(f'<p class="note">{MISSING[name]}</p>')
+            continue
+        adapt(path)
+        out.append(f'<figure>{inline(path, "svg+xml", words)}<figcaption>{words}</figcaption></figure>')
+    return f'<div class="pair">{"".join(out)}</div>'
+
+
+def adapt(path):
+    """Lets the plot follow the reader's choice of light or dark."""
+    text = path.read_text()
+    light, dark = [], []
+    for k, (colour, other) in enumerate(DARK.items()):
+        text = text.replace(colour, f"var(--c{k})")
+        light.append(f"--c{k}:{colour}")
+        dark.append(f"--c{k}:{other}")
+    text = text.replace(f"fill: {BACKGROUND}", "fill: none")
+    style = f"<style>svg{{{';'.join(light)}}}@media(prefers-color-scheme:dark){{svg{{{';'.join(dark)}}}}}</style>"
+    start = text.index(">", text.index("<svg")) + 1
+    path.write_text(text[:start] + style + text[start:])
+
+
+def sizes_of(pack):
+    """Diameters that a share of mass or number does not exceed, asked and got, and the largest distance of the curves."""
+    r, *asked = packs.asked_curve(pack.scene()["particles"]["radius"])
+    got_r, *got = packs.got_curve(pack.radius)
+    found = {}
+    for kind, curve, shares in zip(("number", "mass"), asked, got):
+        quantiles = {f"D{p}": (2.0 * np.interp(p / 100.0, curve, r), 2.0 * got_r[np.searchsorted(shares, p / 100.0)])
+                     for p in (10, 30, 50, 60, 90)}
+        above, below = (np.interp(np.nextafter(got_r, side * np.inf), r, curve) for side in (1, -1))   # of a jump
+        before = np.searchsorted(got_r, got_r, side="left") - 1   # of the particles with the same radius
+        shares_up_to = shares[np.searchsorted(got_r, got_r, side="right") - 1]
+        distance = max(np.abs(shares_up_to - above).max(),
+                       np.abs(np.where(before < 0, 0.0, shares[before]) - below).max())
+        found[kind] = {"quantiles": quantiles, "kolmogorov": distance}
+    return found
+
+
+def comparison(pack):
+    got, layers = pack.summary, pack.layers
+    rows = [["The pack"],
+            ["particles", "–", number(pack.count), "–"],
+            ["height [m]", number(got["height_asked"]), number(got["height"], 5),
+             percent(got["height"], got["height_asked"])],
+            ["φ of a layer when inserted", number(got["fraction_asked"]),
+             number(float(np.mean(layers["fraction_got"])), 5),
+             percent(float(np.mean(layers["fraction_got"])), got["fraction_asked"])],
+            ["φ below the height asked", "–", f"{pack.phi:.4f}", "–"],
+            ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"]]
+    for kind, found in sizes_of(pack).items():
+        rows.append([f"Diameters by {kind}"])
+        two = found["quantiles"]
+        for name, (wanted, there) in two.items():
+            rows.append([f"{name[0]}<sub>{name[1:]}</sub> [mm]", number(1000.0 * wanted), number(1000.0 * there),
+                         percent(there, wanted)])
+        for name, words, ratio in (("Cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>",
+                                    lambda side: two["D60"][side] / two["D10"][side]),
+                                   ("Cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)",
+                                    lambda side: two["D30"][side] ** 2 / (two["D10"][side] * two["D60"][side]))):
+            rows.append([words, number(ratio(0)), number(ratio(1)), percent(ratio(1), ratio(0))])
+        rows.append(["Kolmogorov distance", "–", number(float(found["kolmogorov"]), 3), "–"])
+    return table(["", "asked", "got", "difference"], rows, "asked and got")
+
+
+def protocol(pack):
+    got, scene = pack.summary, pack.scene()
+    dynamics, layers = scene["dynamics"], scene["layers"]
+    window = dynamics.get("window", 0)
+    return listed([
+        ("time step", quantity(got["time_step"], "s", 6)),
+        ("layers", f"{len(pack.layers['inserted'])} of {quantity(layers['thickness'], 'm')}"),
+        ("duration of a layer", f"{quantity(layers['duration'], 's')} at most"
+         if dynamics.get("stop") == "settled" else quantity(layers["duration"], "s")),
+        ("window", f"the {number(window)} newest layers move" if window else "none: all move"),
+        ("thaw", f"{number(got['thaws'])}, {number(got['thaw_steps'])} steps" if got["thaws"] else "none"),
+        ("simulated", f"{quantity(got['duration'], 's')} in {number(got['steps'])} steps"),
+        ("gravity", quantity(scene["jamming"]["gravity"], "m/s²")),
+        ("friction, damping", f"{number(scene['contact']['friction'])}, {number(scene['contact']['damping_ratio'])} of critical"),
+        ("rotation", "yes" if dynamics.get("rotation", True) else "no"),
+        ("ended by", html.escape(got["stop_reason"])),
+        ("creep left", f"{quantity(got['creep'], '1/s', 3)} of φ<sub>bulk</sub>")])
+
+
+def layer_table(pack):
+    columns = pack.layers
+    rows = [[str(k + 1), number(columns["inserted"][k]), number(columns["total"][k]), number(columns["height"][k]),
+             number(columns["duration"][k]), number(columns["kinetic_per_mgd"][k], 3), number(columns["max_overlap"][k], 3),
+             f"{columns['coordination'][k]:.2f}"] for k in range(len(columns["inserted"]))]
+    heads = ["layer", "inserted", "in all", "height [m]", "time [s]", "kinetic energy / mgd", "largest overlap / r",
+             "neighbours"]
+    return f"<details><summary>Layer by layer</summary>{table(heads, rows, 'layers')}</details>"
+
+
+def verdict(bad):
+    return '<span class="bad">no</span>' if bad else '<span class="good">yes</span>'
+
+
+def checks(pack):
+    audit = pack.audit
+    rows = [["all inserted particles are there", f"{number(audit['found'])} of {number(audit['expected'])}", verdict(audit["lost"])],
+            ["all numbers are finite", f"{number(audit['non_finite'])} are not", verdict(audit["non_finite"])],
+            ["all centres are in the container", f"{number(audit['outside'])} are not", verdict(audit["outside"])],
+            ["no overlap beyond half a radius", f"{number(audit['worst_overlap'], 3)} at most", verdict(audit["worst_overlap"] > 0.5)],
+            ["no wall penetrated beyond half a radius", f"{number(audit['worst_wall_penetration'], 3)} at most",
+             verdict(audit["worst_wall_penetration"] > 0.5)],
+            ["the height asked was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
+    return table(["check", "found", "met"], rows, "checks")
+
+
+def ledger(pack):
+    """Where the energy of the particles that moved last has gone."""
+    steps = pack.steps()
+    if not steps or "dissipated" not in steps:
+        return '<p class="note">No energy ledger: the time series NAME.steps.csv is not beside the pack.</p>'
+    parts = ("kinetic energy", "rotational energy", "potential energy", "elastic energy", "dissipated")
+    rows = [[name if name != "rotational energy" else "of which rotational", quantity(float(steps[name][-1]), "J")] for name in parts]
+    return table(["energy of the moving particles at the end", ""], rows, "energy ledger")
+
+
+def provenance(pack):
+    made = pack.provenance
+    scene = html.escape(made["effective_input"])
+    return listed([
+        ("packmpi", f"{html.escape(made['version'])} ({html.escape(made['git'])})"), ("seed", str(made["seed"])),
+        ("scene", html.escape(made["scene_file"])), ("compiler", html.escape(made["compiler"])),
+        ("instruction set", html.escape(made["architecture"])),
+        ("ranks", f"{number(made['ranks'])}, {html.escape(made['decomposition'])}"),
+        ("wall time", quantity(made["wall_seconds"], "s", 3)),
+        ("speed", quantity(made["particle_steps_per_second"], "particle-steps/s", 3)),
+    ]) + f"<details><summary>The scene with every default: a scene file itself</summary><pre>{scene}</pre></details>"
+
+
+def page(pack, analysis, pixels):
+    size = " × ".join(f"{length:g}" for length in pack.size)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        body = [
+            f"<header><h1>{html.escape(pack.name)}</h1><p>{number(pack.count)} {pack.noun} in {size} m, "
+            f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
+            facts(pack, analysis), pictures(pack, folder, pixels),
+            section("plots", "What it is like", plots(pack, analysis, folder)),
+            section("asked", "Asked and got", comparison(pack),
+                    '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the asked and the got curve.</p>'),
+            section("protocol", "Protocol", protocol(pack), layer_table(pack)),
+            section("checks", "Checks", checks(pack), ledger(pack)),
+            section("provenance", "Provenance", provenance(pack))]
+    style = STYLE.read_text()
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<link rel="icon" href="data:,">
+<title>{html.escape(pack.name)}: a pack of {pack.count} {pack.noun}</title>
+<style>
+{style}</style>
+</head>
+<body><main>
+{chr(10).join(body)}
+</main></body>
+</html>
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Write one page, HTML, on a pack (NAME.hdf).")
+    parser.add_argument("pack", help="pack file, NAME.hdf")
+    parser.add_argument("-o", "--output", type=Path, help="page to write (default: NAME.html beside the pack)")
+    parser.add_argument("--program", help="packmpi (default: build/packmpi, or the one in PATH)")
+    parser.add_argument("--size", type=int, default=700, help="width of the pictures in pixels, about (default 700)")
+    options = parser.parse_args()
+    pack = packs.Pack(options.pack)
+    if pack.count == 0:
+        fail(f"{options.pack} has no particles")
+    path = options.output or pack.path.with_suffix(".html")
+    text = page(pack, pack.analysis(options.program), options.size)
+    try:
+        path.write_text(text)
+    except OSError as error:
+        fail(f"cannot write {path}: {error}")
+    print(f"{path}: {pack.count} particles, {len(text) / 1024:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
