@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "input/checks.hpp"
 #include "input/document.hpp"
+#include "input/fidelity.hpp"
 #include "input/keys.hpp"
 #include "input/values.hpp"
 
@@ -183,6 +184,7 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   in.name = std::filesystem::path(path).stem().string();
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
+  apply_preset(document, in);
   take_curve(document, curve, in.particles.radius);
   check(in, document);
   in.effective = effective(in);

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 
+#include "input/fidelity.hpp"
 #include "input/keys.hpp"
 #include "input/read.hpp"
 #include "input/values.hpp"
@@ -16,7 +18,7 @@ constexpr std::size_t width = 100;  // columns of a comment
 // What has no default must come from somewhere: the material and the layers of the paper's examples, in a small box.
 std::string example(int dimension) {
   return fmt::format(
-      "container.dimension = {}\ncontainer.size = {}\n"
+      "fidelity = \"balanced\"\ncontainer.dimension = {}\ncontainer.size = {}\n"
       "particles.density = 1000.0\nparticles.youngs_modulus = 1.0e8\nparticles.poisson_ratio = 0.25\n"
       "particles.radius.distribution = \"equal\"\nparticles.radius.value = {}\n"
       "layers.thickness = 0.1\nlayers.fraction = {}\njamming.gravity = 2.0\n",
@@ -52,10 +54,15 @@ bool at_default(const Key& key, Input& in) {
   return written(key, other) == written(key, in);
 }
 
+bool by_preset(const Key& key, const Input& in) {
+  return std::ranges::any_of(preset(in), [&](const PresetValue& entry) { return entry.path == key.path; });
+}
+
 std::string lines(const Key& key, Input& in) {
   const std::string_view name = split(key.path)[1];
   std::string text = comment(fmt::format("{} ({})", key.doc, wanted(key)));
   if (!key.applies(in)) return text + fmt::format("# {} = ...   # only if {}\n", name, key.when.words);
+  if (by_preset(key, in)) return text + fmt::format("# {} = {}   # by fidelity\n", name, written(key, in));
   return text + fmt::format("{}{} = {}\n", at_default(key, in) ? "# " : "", name, written(key, in));
 }
 
@@ -65,7 +72,8 @@ std::string starter(int dimension) {
   Input in = parse(example(dimension), "example", {});
   std::string text =
       "# A scene of packmpi. Numbers are in SI units, or text with a unit: \"20 mm\". Keys that are commented out\n"
-      "# have the value shown. Check it with: packmpi check FILE; run it with: mpirun -n 4 packmpi FILE\n\n";
+      "# have the value shown, some of it by the preset that fidelity names. Check it with: packmpi check FILE; run\n"
+      "# it with: mpirun -n 4 packmpi FILE\n\n";
   std::string_view open;
   for (const Key& key : keys()) {
     const std::string_view table = split(key.path)[0];

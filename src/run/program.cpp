@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "comm/session.hpp"
+#include "input/fidelity.hpp"
 #include "input/starter.hpp"
 #include "output/report.hpp"
 #include "run/analyze.hpp"
@@ -42,6 +43,9 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         "# lateral grid {} x {} columns: at most {} ranks\n# about {:.0f} particles\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         std::int64_t{nx} * ny, expected_particles(scene));
+    fmt::print("# time step of layers {:g} s, thaw {:g} s\n", scene.settling.time_step, scene.thaw);
+    fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);
+    for (const std::string& line : input::preset_in_use(scene.in)) fmt::print("#   {}\n", line);
   }
   return 0;
 }

@@ -2,12 +2,14 @@
 // point.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "input/fidelity.hpp"
 #include "input/keys.hpp"
 #include "input/read.hpp"
 #include "input/rhythm.hpp"
@@ -181,6 +183,66 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
   EXPECT_FALSE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.01);
   EXPECT_EQ(in.petsc.options, "");
+}
+
+/// The scene `least` with these keys.
+Input with(const std::vector<std::string>& set) { return parse(least, "a.toml", {set}); }
+
+TEST(Fidelity, PaperIsAFixedStepAndDurationAndAllMove) {
+  const Input in = with({"fidelity=paper"});
+  EXPECT_EQ(in.dynamics.time_step, 1e-4);
+  EXPECT_EQ(in.layers.duration, 1.0);
+  EXPECT_EQ(in.dynamics.window, 0);
+  EXPECT_FALSE(in.layers.youngs_modulus.has_value());
+  EXPECT_EQ(with({"fidelity=paper", "dynamics.time_step=auto"}).effective, with({}).effective)
+      << "without the key, each key has its own default";
+}
+
+TEST(Fidelity, PresetsAreKeysOfTheEffectiveInput) {
+  for (const char* name : {"fidelity=balanced", "fidelity=draft"}) {
+    for (const char* dimension : {"container.dimension=3", "container.dimension=2"}) {
+      for (const char* rotation : {"dynamics.rotation=true", "dynamics.rotation=false"}) {
+        std::vector<std::string> set{name, dimension, rotation};
+        if (std::string(dimension).ends_with('2')) set.emplace_back("container.size=[1.0, 0.5]");
+        const Input in = with(set);
+        EXPECT_LT(in.layers.duration, 1.0) << name;
+        EXPECT_LT(in.layers.velocity[in.container.size.size() - 1], 0.0) << name;
+        EXPECT_GT(in.dynamics.thaw, 0.0) << name;
+        EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << name;
+        for (const PresetValue& entry : preset(in)) {
+          std::string line(entry.path.substr(entry.path.rfind('.') + 1));
+          line.insert(0, 1, '\n').append(" = ");
+          EXPECT_NE(in.effective.find(line), std::string::npos) << entry.path;
+        }
+      }
+    }
+  }
+}
+
+TEST(Fidelity, GivenKeysWin) {
+  const Input in =
+      with({"fidelity=balanced", "layers.duration=0.77", "dynamics.window=9", "layers.youngs_modulus=5e7"});
+  EXPECT_EQ(in.layers.duration, 0.77);
+  EXPECT_EQ(in.dynamics.window, 9);
+  EXPECT_EQ(in.layers.youngs_modulus, 5e7);
+  EXPECT_EQ(in.dynamics.thaw, with({"fidelity=balanced"}).dynamics.thaw) << "the others stay";
+  const std::vector<std::string> lines = preset_in_use(in);
+  EXPECT_TRUE(std::ranges::any_of(
+      lines, [](const std::string& line) { return line.starts_with("layers.duration = 0.77 (the preset: 0."); }));
+  EXPECT_EQ(std::ranges::count_if(lines, [](const auto& line) { return line.find("the preset") != line.npos; }),
+            std::ranges::count_if(preset(in), [](const auto& entry) {
+              return entry.path == "layers.duration" || entry.path == "dynamics.window" ||
+                     entry.path == "layers.youngs_modulus";
+            }));
+}
+
+TEST(Fidelity, TimesGoWithTheFreeFallThroughALayer) {
+  const Input in = with({"fidelity=draft"});
+  const Input heavy = with({"fidelity=draft", "jamming.gravity=8.0"});  // four times as much
+  const Input thick = with({"fidelity=draft", "layers.thickness=0.4"});
+  EXPECT_NEAR(heavy.layers.duration, 0.5 * in.layers.duration, 0.01 * in.layers.duration);
+  EXPECT_NEAR(*thick.dynamics.thaw, 2.0 * *in.dynamics.thaw, 0.01 * *in.dynamics.thaw);
+  EXPECT_NEAR(heavy.layers.velocity[2], 2.0 * in.layers.velocity[2], 0.01 * -in.layers.velocity[2]);
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {

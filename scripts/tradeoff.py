@@ -1,0 +1,247 @@
+#!/usr/bin/python3
+"""What each way to a cheaper pack changes in it, one knob at a time, and whether the presets of `fidelity` keep their
+bounds: a table in doc/accuracy.md, a plot in doc/images, every run a row in doc/data/tradeoff.csv.
+
+usage: scripts/tradeoff.py [--scenes brick_on ...] [--knobs presets step ...] [--seeds N] [--report-only] [--fresh]
+
+A row is not made again while its scene, setting, seed and options are there: stop it at any time, start it again.
+One run at a time, one rank. Seeds are by scene, as few as show what is to be shown on two cores; more: --seeds. All of it
+is about three quarters of an hour of one core. Packs of a scene hold the same spheres, unless a knob changes the layers.
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import measuring
+import tradeoff_report
+
+OFF = {"dynamics.rotation": "false"}
+BRICK = {"container.size": "[0.6,0.6,0.5]", "layers.maximum": "12"}
+TALL = {"container.size": "[0.6,0.6,1.0]", "layers.maximum": "24"}
+TWELVE = {"layers.maximum": "12"}
+PERIODIC = {"container.boundary": '["periodic","periodic"]'}
+# Coarse rock, nothing of it as in the paper's examples: size, shape of the grading, density, modulus, friction, damping, gravity.
+ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","periodic"]', "layers.maximum": "12", "layers.thickness": "0.5",
+        "particles.density": "2650.0", "particles.youngs_modulus": "1e9", "contact.friction": "0.5", "contact.damping_ratio": "0.3",
+        "drag.coefficient": "0.0", "jamming.gravity": "9.81",
+        "particles.radius": '{distribution="lognormal",median=0.1,log_sd=0.2,min=0.065,max=0.15,weighting="mass"}'}
+
+# name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
+# `fidelity` alone says how a pack is made.
+SCENES = {
+    "brick_on": ("paper_5_3", BRICK, 6, "3D, equal, 12 layers, rotation on"),
+    "brick_off": ("paper_5_3", {**BRICK, **OFF}, 6, "the same, rotation off"),
+    "tall_on": ("paper_5_3", TALL, 4, "3D, equal, 24 layers, rotation on"),
+    "tall_off": ("paper_5_3", {**TALL, **OFF}, 4, "the same, rotation off"),
+    "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 4, "3D, Gaussian, periodic, 12 layers, rotation on"),
+    "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 4, "the same, rotation off"),
+    "2d_on": ("paper_5_1", TWELVE, 10, "2D, equal (example 5.1), 12 layers, rotation on"),
+    "2d_off": ("paper_5_1", {**TWELVE, **OFF}, 10, "the same, rotation off"),
+    "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
+    "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
+    "rock": ("paper_5_3", ROCK, 4, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; not used to choose the presets"),
+}
+PAPER = {"fidelity": "paper"}
+REFERENCE = "paper"
+
+
+def down(speed):
+    return {"layers.velocity": f"[0.0,0.0,-{speed}]"}
+
+
+def viscous(slip_time):
+    return {"contact.regularisation": "viscous", "contact.slip_time": slip_time}
+
+
+# knob: {setting: options}; all but the presets on brick_on unless --scenes says otherwise.
+KNOBS = {
+    "presets": {"balanced": {"fidelity": "balanced"}, "draft": {"fidelity": "draft"}},
+    "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.5e-4", "3e-4")},
+    "convergence": {f"slip time 2e-4, dt {dt}": {**viscous("2e-4"), "dynamics.time_step": dt}
+                    for dt in ("0.25e-4", "0.5e-4", "1e-4")},
+    "duration": {f"{t} s a layer": {"layers.duration": t} for t in ("0.25", "0.5", "2.0")},
+    "settled": {"settled, default limits": {"dynamics.stop": "settled"},
+                "settled, limits 3 times wider": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-3", "dynamics.settled_drift": "1.5e-2"},
+                "settled, limits 3 times tighter": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-4",
+                                                    "dynamics.settled_drift": "1.5e-3"}},
+    "layers": {"layers half as thick": {"layers.thickness": "0.05", "layers.maximum": "24"},
+               "layers twice as thick": {"layers.thickness": "0.2", "layers.maximum": "6"},
+               "phi_0 0.15": {"layers.fraction": "0.15", "layers.maximum": "20"},
+               "phi_0 0.30": {"layers.fraction": "0.30", "layers.maximum": "10"}},
+    "stiffness": {"E 1e7 throughout": {"particles.youngs_modulus": "1e7"},
+                  **{f"E {e} in layers, hardened in 0.9 s": {"layers.youngs_modulus": e, "dynamics.thaw": "0.9"} for e in ("3e7", "1e7", "3e6")}},
+    "friction": {"friction viscous, slip time 2e-4": viscous("2e-4"), "friction viscous, slip time 1e-3": viscous("1e-3"),
+                 "friction without a cap": {"contact.regularisation": "none"}},
+    "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5", "8")},
+    "thaw": {f"window 5, thaw {t} s": {"dynamics.window": "5", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
+    "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},
+}
+SEEDS_OF_KNOBS = 3
+FILES_OWN = ("layers.duration", "dynamics.time_step", "fidelity")   # what a setting says instead of the scene's file
+
+
+def bare_scene(options, file):
+    """The scene's file without its own step, duration and fidelity, so that these come from `fidelity`."""
+    names = {key.split(".")[-1] for key in FILES_OWN}
+    lines = (measuring.ROOT / f"input/{file}.toml").read_text().splitlines()
+    path = options.results / f"{file}.toml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(line for line in lines if line.split("=")[0].strip() not in names) + "\n")
+    return path
+
+
+def planned(options):
+    """(scene, setting, options of the program, seed), the references of each scene first."""
+    runs = []
+    for scene, (_, changes, seeds, _) in SCENES.items():
+        if scene not in options.scenes:
+            continue
+        wanted = options.seeds or seeds
+        for seed in range(1, wanted + 1):
+            for setting, values in {REFERENCE: {}, **(KNOBS["presets"] if "presets" in options.knobs else {})}.items():
+                runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
+        if scene not in options.knob_scenes:
+            continue
+        for knob in options.knobs:
+            for setting, values in KNOBS[knob].items() if knob != "presets" else ():
+                for seed in range(1, (options.seeds or SEEDS_OF_KNOBS) + 1):
+                    runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
+    return runs
+
+
+def coarse(profile, width, count):
+    """The first `count` bins of that width of a profile, means weighted by overlap."""
+    values, step = profile["values"], profile["width"]
+    out = []
+    for k in range(count):
+        low, high, total = profile["from"] + k * width, profile["from"] + (k + 1) * width, 0.0
+        for j, value in enumerate(values):
+            left = profile["from"] + j * step
+            total += value * max(0.0, min(high, left + step) - max(low, left))
+        out.append(total / width)
+    return " ".join(f"{value:.4g}" for value in out)
+
+
+def curves(options, pack, height):
+    """Density over height, g(r), distribution of forces, as `packmpi analyze` measures them."""
+    subprocess.run([options.program, "analyze", pack, "-q"], env=measuring.ENVIRONMENT, stdout=subprocess.DEVNULL, check=True)
+    got = json.loads(pack.with_suffix(".analysis.json").read_text())
+    vertical = got["density_profile"]["z" if "z" in got["density_profile"] else "y"]
+    return {"held_coordination": got["contacts"]["held_coordination"], "profile": coarse(vertical, height / 20.0, 20),
+            "g": coarse(got["pair_distribution"]["g"], 0.1, 25), "forces": coarse(got["forces"]["distribution"], 0.25, 16)}
+
+
+def make(options, scene, setting, values, seed):
+    """One row of the data."""
+    file = SCENES[scene][0]
+    folder = options.results / "runs" / f"{os.getpid()}"
+    shutil.rmtree(folder, ignore_errors=True)
+    words = measuring.options_of(values)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([options.program, bare_scene(options, file), "-q", "--force", "--seed", str(seed), "-o", folder,
+                           "--set", "output.log_every=0.5", *words],
+                          env=measuring.ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    row = {"commit": options.commit, "scene": scene, "setting": setting, "seed": seed, "exit": done.returncode,
+           "cpu_seconds": f"{cpu:.2f}", "options": " ".join(words[1::2])}
+    if done.returncode not in (0, 3):
+        row["words"] = done.stderr.strip().splitlines()[-1].replace(str(options.results) + "/", "")[:300]
+        return row
+    got = json.loads((folder / f"{file}.json").read_text())
+    layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
+    row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep",
+                                      "particle_steps")}
+    row |= {"layers": len(layers["inserted"]), "largest_overlap": audit["worst_overlap"], "floor_over_weight": got["floor_force"] / got["weight"],
+            "kinetic_per_mgd": got["kinetic_energy"] / (got["weight"] * 2.0 * got["mean_radius"])}
+    row |= curves(options, folder / f"{file}.hdf", asked["height_asked"])
+    return {key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()}
+
+
+COLUMNS = ["scene", "setting", "seed", "commit", "exit", "particles", "layers", "height", "phi", "phi_bulk", "coordination", "held_coordination",
+           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps", "cpu_seconds",
+           "profile", "g", "forces", "options", "words"]
+
+
+def read_rows(path):
+    if not path.exists():
+        return []
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def write_rows(path, rows):
+    order = {name: k for k, name in enumerate(SCENES)}
+    rows = sorted(rows, key=lambda row: (order.get(row["scene"], 99), row["setting"], int(row["seed"])))
+    fresh = path.with_suffix(".new")
+    with open(fresh, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n", restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    fresh.replace(path)
+
+
+def identity(row):
+    return row["scene"], row["setting"], int(row["seed"])
+
+
+def commit():
+    """The last commit that touched the program."""
+    git = ["git", "-C", measuring.ROOT]
+    last = subprocess.run([*git, "log", "-1", "--format=%h", "--", "src"], text=True, capture_output=True, check=False).stdout.strip()
+    dirty = subprocess.run([*git, "status", "--porcelain", "src"], text=True, capture_output=True, check=False).stdout
+    return (last or "unknown") + ("-dirty" if dirty else "")
+
+
+def measure(options):
+    rows = {} if options.fresh else {identity(row): row for row in read_rows(options.data)}
+    todo = [(scene, setting, values, seed) for scene, setting, values, seed in planned(options)
+            if rows.get((scene, setting, seed), {}).get("options") != " ".join(measuring.options_of(values)[1::2])]
+    start = time.monotonic()
+    for k, (scene, setting, values, seed) in enumerate(todo):
+        row = make(options, scene, setting, values, seed)
+        rows[identity(row)] = row
+        write_rows(options.data, rows.values())
+        left = (time.monotonic() - start) / (k + 1) * (len(todo) - k - 1)
+        print(f"{k + 1}/{len(todo)}, {left / 60.0:.0f} min left: {scene}, {setting}, seed {seed}: {row['cpu_seconds']} s, "
+              f"{'phi_bulk ' + str(row['phi_bulk']) if 'phi_bulk' in row else row.get('words', '')}", flush=True)
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, help="seeds 1 .. N in every scene")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--knobs", nargs="+", choices=KNOBS, default=list(KNOBS))
+    parser.add_argument("--knob-scenes", nargs="+", choices=SCENES, default=["brick_on"], help="where single knobs are turned")
+    parser.add_argument("--report-only", action="store_true", help="report on the runs there are")
+    parser.add_argument("--fresh", action="store_true", help="make every run again")
+    parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
+    parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/tradeoff")
+    parser.add_argument("--doc", type=Path, default=measuring.ROOT / "doc")
+    options = parser.parse_args()
+    options.program, options.results = options.program.resolve(), options.results.resolve()
+    options.data, options.commit = options.doc / "data/tradeoff.csv", commit()
+    return options
+
+
+def main():
+    options = parse()
+    if not options.report_only:
+        measure(options)
+    rows = read_rows(options.data)
+    if not rows:
+        sys.exit("tradeoff: no runs there")
+    tradeoff_report.write(options.doc, rows, SCENES, KNOBS, REFERENCE)
+
+
+if __name__ == "__main__":
+    main()

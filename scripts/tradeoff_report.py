@@ -1,0 +1,225 @@
+"""The report of scripts/tradeoff.py: tables and plot for doc/accuracy.md from the rows of doc/data/tradeoff.csv."""
+import math
+import statistics
+
+import measuring
+
+BALANCED = {"phi_3d": 0.002, "phi_2d": 0.005, "coordination": 0.05, "overlap": 0.20, "fewer": 8.0}
+DRAFT = {"phi": 0.010, "fewer": 20.0}
+
+
+def number(row, key):
+    return float(row[key]) if row[key] else math.nan
+
+
+def made(rows, scene, setting):
+    return [row for row in rows if row["scene"] == scene and row["setting"] == setting and row["particles"]]
+
+
+class Noise:
+    """Standard deviation of a measure from pack to pack in a scene, pooled over its settings: steadier than three seeds'."""
+
+    def __init__(self, rows, scene):
+        self.groups = {}
+        for row in rows:
+            if row["scene"] == scene and row["particles"]:
+                self.groups.setdefault(row["setting"], []).append(row)
+
+    def sd(self, key):
+        squares = count = 0.0
+        for group in self.groups.values():
+            values = [number(row, key) for row in group]
+            if len(values) > 1:
+                squares += statistics.variance(values) * (len(values) - 1)
+                count += len(values) - 1
+        return math.sqrt(squares / count) if count else math.nan
+
+    def of_difference(self, key, some, others):
+        return self.sd(key) * math.sqrt(1.0 / len(some) + 1.0 / len(others))
+
+
+def mean(rows, key):
+    return statistics.mean(number(row, key) for row in rows)
+
+
+def ratio(references, rows, key):
+    """How many times less than the references."""
+    return mean(references, key) / mean(rows, key)
+
+
+def curve(rows, key):
+    """Mean over the rows of each bin, and the variance of that mean."""
+    columns = list(zip(*([float(word) for word in row[key].split()] for row in rows)))
+    means = [statistics.mean(column) for column in columns]
+    variances = [statistics.variance(column) / len(column) if len(column) > 1 else math.nan for column in columns]
+    return means, variances
+
+
+def distance(references, rows, key):
+    """Root mean square of the difference of two mean curves, and what the scatter of the seeds alone gives."""
+    (a, va), (b, vb) = curve(references, key), curve(rows, key)
+    return (math.sqrt(statistics.mean((x - y) ** 2 for x, y in zip(a, b))),
+            math.sqrt(statistics.mean(x + y for x, y in zip(va, vb))))
+
+
+def is_2d(scene):
+    return scene.startswith("2d")
+
+
+def misses(scene, setting, references, rows, noise):
+    """Which bounds of the preset are missed, in words; empty: none."""
+    phi = abs(mean(rows, "phi_bulk") - mean(references, "phi_bulk"))
+    fewer = ratio(references, rows, "particle_steps")
+    if setting == "draft":
+        checks = {"phi_bulk": phi <= DRAFT["phi"], "cost": fewer >= DRAFT["fewer"] or is_2d(scene)}
+    else:
+        limit = max(BALANCED["phi_2d"], 2.0 * noise.of_difference("phi_bulk", rows, references)) if is_2d(scene) else BALANCED["phi_3d"]
+        checks = {"phi_bulk": phi <= limit,
+                  "coordination": abs(mean(rows, "coordination") - mean(references, "coordination")) <= BALANCED["coordination"],
+                  "overlap": abs(1.0 - 1.0 / ratio(references, rows, "mean_overlap")) <= BALANCED["overlap"],
+                  "cost": fewer >= BALANCED["fewer"] or is_2d(scene)}
+    return ", ".join(name for name, held in checks.items() if not held)
+
+
+def difference(references, rows, noise, key, digits):
+    return (f"{mean(rows, key) - mean(references, key):+.{digits}f} +- "
+            f"{noise.of_difference(key, rows, references):.{digits}f}")
+
+
+def measures(references, rows, noise):
+    """The cells every table has: differences from the reference, and what was saved."""
+    return (f"{difference(references, rows, noise, 'phi_bulk', 4)} | {difference(references, rows, noise, 'coordination', 2)} | "
+            f"{mean(rows, 'mean_overlap') / mean(references, 'mean_overlap'):.2f} | "
+            f"{ratio(references, rows, 'particle_steps'):.1f} | {ratio(references, rows, 'cpu_seconds'):.1f}")
+
+
+def reference_words(rows):
+    spheres = sorted({row["particles"] for row in rows})
+    return (f"{len(rows)} seeds, {' or '.join(spheres) if len(spheres) < 3 else spheres[0] + ' to ' + spheres[-1]} particles, "
+            f"phi(H_d) {mean(rows, 'phi'):.4f}, phi_bulk {mean(rows, 'phi_bulk'):.4f}, coordination {mean(rows, 'coordination'):.2f}, "
+            f"rattlers {100 * mean(rows, 'rattlers'):.1f} %, mean overlap {mean(rows, 'mean_overlap'):.1e} r, largest "
+            f"{mean(rows, 'largest_overlap'):.1e} r, floor force / weight {mean(rows, 'floor_over_weight'):.3f}, "
+            f"kinetic energy {mean(rows, 'kinetic_per_mgd'):.0e} m g d, {mean(rows, 'particle_steps'):.2e} particle-steps, "
+            f"{mean(rows, 'cpu_seconds'):.1f} s")
+
+
+def presets(rows, scenes, reference):
+    out = ["| scene | preset | seeds | phi_bulk | coordination | overlap, ratio | fewer particle-steps | faster | beyond its bounds |",
+           "|---|---|---|---|---|---|---|---|---|"]
+    for scene, (*_, words) in scenes.items():
+        references, noise = made(rows, scene, reference), Noise(rows, scene)
+        for preset in ("balanced", "draft"):
+            mine = made(rows, scene, preset)
+            if references and mine:
+                out.append(f"| {words} | {preset} | {len(mine)} | {measures(references, mine, noise)} | "
+                           f"{misses(scene, preset, references, mine, noise) or 'nothing'} |")
+    return out + [""]
+
+
+def inside(rows, scenes, reference):
+    """Rattlers, floor, motion left and the curves of `packmpi analyze`, for the presets."""
+    out = ["| scene | preset | phi(H_d) | rattlers, % | largest overlap, ratio | floor force / weight | kinetic energy left, m g d | "
+           "density profile | g(r) | forces |", "|---|---|---|---|---|---|---|---|---|---|"]
+    for scene in scenes:
+        references, noise = made(rows, scene, reference), Noise(rows, scene)
+        for preset in ("balanced", "draft"):
+            mine = made(rows, scene, preset)
+            if len(references) < 2 or len(mine) < 2:
+                continue
+            curves = " | ".join("{:.3f} ({:.3f})".format(*distance(references, mine, key)) for key in ("profile", "g", "forces"))
+            out.append(f"| {scene} | {preset} | {difference(references, mine, noise, 'phi', 4)} | "
+                       f"{100 * (mean(mine, 'rattlers') - mean(references, 'rattlers')):+.1f} | "
+                       f"{mean(mine, 'largest_overlap') / mean(references, 'largest_overlap'):.2f} | {mean(mine, 'floor_over_weight'):.3f} | "
+                       f"{mean(mine, 'kinetic_per_mgd'):.0e} | {curves} |")
+    return out + [""]
+
+
+def single_knobs(rows, knobs, reference):
+    out = []
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        references, noise = made(rows, scene, reference), Noise(rows, scene)
+        lines = []
+        for knob, settings in knobs.items():
+            for setting in settings if knob not in ("presets", "convergence") else ():
+                mine = made(rows, scene, setting)
+                if mine and references:
+                    lines.append(f"| {knob} | {setting} | {len(mine)} | {measures(references, mine, noise)} |")
+                failed = [row for row in rows if row["scene"] == scene and row["setting"] == setting and not row["particles"]]
+                if failed:
+                    lines.append(f"| {knob} | {setting} | {len(failed)} | exit code {failed[0]['exit']}: {failed[0]['words']} | | | | |")
+        if lines:
+            out += [f"Scene `{scene}`:", "", "| knob | setting | seeds | phi_bulk | coordination | overlap, ratio | fewer particle-steps | faster |",
+                    "|---|---|---|---|---|---|---|---|", *lines, ""]
+    return out
+
+
+def convergence(rows, scene="brick_on"):
+    """phi_bulk against the step, for each way to regularise friction."""
+    families = {"\"stop\": the slip may end within one step": {"0.25e-4": "dt 0.25e-4", "0.5e-4": "dt 0.5e-4", "1e-4": "paper", "2e-4": "dt 2e-4"},
+                "\"viscous\", slip time 2e-4 s": {dt: f"slip time 2e-4, dt {dt}" for dt in ("0.25e-4", "0.5e-4", "1e-4")}}
+    steps = ("0.25e-4", "0.5e-4", "1e-4", "2e-4")
+    noise = Noise(rows, scene)
+    out = ["| friction | " + " | ".join(f"dt {dt}" for dt in steps) + " |", "|---" * (len(steps) + 1) + "|"]
+    for words, settings in families.items():
+        cells = []
+        for dt in steps:
+            mine = made(rows, scene, settings.get(dt, ""))
+            cells.append(f"{mean(mine, 'phi_bulk'):.4f} +- {noise.sd('phi_bulk') / math.sqrt(len(mine)):.4f} ({len(mine)}); "
+                         f"{mean(mine, 'coordination'):.2f}" if mine else "")
+        out.append(f"| {words} | " + " | ".join(cells) + " |")
+    return out + [""] if any("+-" in line for line in out) else []
+
+
+def plot(path, rows, knobs, scenes, reference):
+    """Cost against the change of the density: left the single knobs, right the presets on all scenes."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True)
+    scene = "brick_on"
+    references, noise = made(rows, scene, reference), Noise(rows, scene)
+    for k, (knob, settings) in enumerate(knobs.items()):
+        points = [(ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
+                   noise.of_difference("phi_bulk", mine, references))
+                  for setting in settings if knob != "convergence" and (mine := made(rows, scene, setting)) and references]
+        if points:
+            x, y, e = zip(*points)
+            left.errorbar(x, y, e, fmt="os^vD<>ph*X"[k % 11], capsize=2, label=knob, markersize=10 if knob == "presets" else 6)
+    left.set_title("single knobs and presets, 3D, 12 layers, rotation on")
+    for k, name in enumerate(scenes):
+        references, noise = made(rows, name, reference), Noise(rows, name)
+        for preset, colour in (("balanced", "tab:blue"), ("draft", "tab:red")):
+            mine = made(rows, name, preset)
+            if references and mine:
+                right.errorbar(ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
+                               noise.of_difference("phi_bulk", mine, references), fmt="os^vD<>ph*X"[k % 11], color=colour, capsize=2,
+                               label=name if preset == "balanced" else None)
+    right.set_title("presets (blue balanced, red draft), all scenes")
+    for axes in (left, right):
+        axes.axhspan(-BALANCED["phi_3d"], BALANCED["phi_3d"], color="0.88", zorder=0)
+        axes.axhline(0.0, color="0.5", linewidth=0.8)
+        axes.set_xscale("log")
+        axes.set_xlabel("times fewer particle-steps than \"paper\"")
+        axes.legend(fontsize=7)
+    left.set_ylabel("phi_bulk - that of \"paper\"")
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def write(doc, rows, scenes, knobs, reference):
+    total = sum(float(row["cpu_seconds"]) for row in rows)
+    commits = sorted({row["commit"] for row in rows})
+    text = [f"{measuring.made_by('scripts/tradeoff.py')}: {len(rows)} runs, {total / 60.0:.0f} minutes of CPU time, one rank each, "
+            f"commits {', '.join(commits)}.", "", "### The presets", "", *presets(rows, scenes, reference),
+            "### What the packs are like inside", "", *inside(rows, scenes, reference),
+            "### One knob at a time", "", *single_knobs(rows, knobs, reference),
+            "### Smaller steps", "", *convergence(rows),
+            "### The references", "",
+            *(f"* `{scene}`: {words}; {reference_words(made(rows, scene, reference))}." for scene, (*_, words) in scenes.items()
+              if made(rows, scene, reference))]
+    print("\n".join(text))
+    page = doc / "accuracy.md"
+    if page.exists():
+        measuring.write_block(page, "tradeoff", "\n".join(text))
+    plot(doc / "images/tradeoff.png", rows, knobs, scenes, reference)

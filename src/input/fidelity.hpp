@@ -1,0 +1,29 @@
+/// What `fidelity` stands for: values for other keys where the scene gives none.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input/document.hpp"
+#include "input/input.hpp"
+
+namespace packmpi::input {
+
+/// A key and the value, as TOML, that a preset gives it.
+struct PresetValue {
+  std::string_view path;
+  std::string value;
+};
+
+/// The values of the preset in.fidelity for a scene with this container, these layers, gravity and modulus. Numbers
+/// are rounded to three digits. Local. Throws Error(bad_input) where there is no free fall to measure times by.
+[[nodiscard]] std::vector<PresetValue> preset(const Input& in);
+
+/// Gives the keys of the preset that the document does not have their values; only if the document names a preset.
+void apply_preset(const Document& document, Input& in);
+
+/// For a reader: what the preset set, and where the scene has another value. Lines "key = value", "key = value (the
+/// preset: value)".
+[[nodiscard]] std::vector<std::string> preset_in_use(Input in);
+
+}  // namespace packmpi::input
