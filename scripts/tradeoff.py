@@ -133,7 +133,7 @@ def coarse(profile, width, count):
 
 def curves(options, pack, height):
     """Density over height, g(r), distribution of forces, as `packmpi analyze` measures them."""
-    subprocess.run([options.program, "analyze", pack, "-q"], env=measuring.ENVIRONMENT, stdout=subprocess.DEVNULL, check=True)
+    subprocess.run([options.program, "analyze", pack], env=measuring.ENVIRONMENT, stdout=subprocess.DEVNULL, check=True)
     got = json.loads(pack.with_suffix(".analysis.json").read_text())
     vertical = got["density_profile"]["z" if "z" in got["density_profile"] else "y"]
     return {"held_coordination": got["contacts"]["held_coordination"], "profile": coarse(vertical, height / 20.0, 20),
@@ -161,7 +161,7 @@ def make(options, scene, setting, values, seed):
     layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
     row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep",
                                       "particle_steps")}
-    row |= {"layers": len(layers["inserted"]), "largest_overlap": audit["worst_overlap"], "floor_over_weight": got["floor_force"] / got["weight"],
+    row |= {"layers": len(layers), "largest_overlap": audit["worst_overlap"], "floor_over_weight": got["floor_force"] / got["weight"],
             "kinetic_per_mgd": got["kinetic_energy"] / (got["weight"] * 2.0 * got["mean_radius"])}
     row |= curves(options, folder / f"{file}.hdf", asked["height_asked"])
     return {key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()}
