@@ -141,6 +141,12 @@ void Store::keep(std::span<const LocalIndex> kept) {
   set_ghosts(0);
 }
 
+void Store::keep_first(LocalIndex count) {
+  assert(count <= owned_);
+  owned_ = count;
+  set_ghosts(0);
+}
+
 void Store::permute(std::span<LocalIndex> order) {
   assert(order.size() == static_cast<std::size_t>(owned_));
   set_ghosts(0);

@@ -69,6 +69,8 @@ class Store {
   void set_ghosts(LocalIndex count);
   /// Keep the owned particles in the slots `kept` (ascending) and drop the others and all ghosts. In place.
   void keep(std::span<const LocalIndex> kept);
+  /// Keep the first `count` owned particles and drop the others and all ghosts. Precondition: count <= owned().
+  void keep_first(LocalIndex count);
   /// Put the owned particles into the order order[0], order[1], ... (each slot once) and drop all ghosts. In place, so
   /// that no second copy of the particles is ever held; `order` is used up. Cost: one pass over the records.
   void permute(std::span<LocalIndex> order);

@@ -21,11 +21,13 @@ std::uint32_t attempt_limit(const scene::Scene& scene) {
 // Collective. Throws darts until the class's `unplaced` particles are placed, and adds to `got`. The attempts made, if
 // they did not suffice.
 std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t unplaced, std::uint32_t limit,
-                                         Filling& filling, particles::Store& store, Insertion& got) {
+                                         Filling& filling, particles::Store& store, Insertion& got,
+                                         const std::function<void()>& between_volleys) {
   Outlook outlook(limit);
   Pace pace(comm.size());
   for (std::uint32_t attempt = 0; unplaced > 0;) {
     if (attempt == limit || outlook.hopeless(attempt, unplaced)) return attempt;
+    if (between_volleys) between_volleys();
     const Volley volley = pace.next(attempt, unplaced, limit);
     const auto [kept, thrown] = filling.fire(volley, store);
     unplaced -= kept;
@@ -95,7 +97,7 @@ int size_class(const scene::Sizes& sizes, double radius) {
 }
 
 Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
-                 const LayerRegion& region, particles::Store& store) {
+                 const LayerRegion& region, particles::Store& store, const std::function<void()>& between_volleys) {
   check_room(scene, region);
   Insertion got;
   got.asked = particles_needed(comm, scene, region);
@@ -103,8 +105,8 @@ Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene:
   const Filling::Counts counts = filling.count();
   for (int k = 0; k < size_classes; ++k) {
     filling.begin(k);
-    const auto failed =
-        place_class(comm, counts[static_cast<std::size_t>(k)], attempt_limit(scene), filling, store, got);
+    const auto failed = place_class(comm, counts[static_cast<std::size_t>(k)], attempt_limit(scene), filling, store,
+                                    got, between_volleys);
     if (!failed) continue;
     got.solid_volume = filling.solid_volume();
     give_up(scene, region, got, k, *failed);

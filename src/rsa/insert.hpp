@@ -1,6 +1,7 @@
 /// Random sequential addition of one layer, on all ranks, equal to the serial loop particle by particle.
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "comm/comm.hpp"
 #include "particles/store.hpp"
@@ -45,9 +46,12 @@ inline constexpr int size_classes = 8;
 /// (size class, attempt, particle); a dart is kept if it overlaps none kept before it. Appends the placed particles of
 /// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming asked, placed and darts, if a particle
 /// is unplaced after layers.attempts darts; or earlier, once so few darts find room that the attempts left cannot
-/// suffice. Cost: O(darts / ranks) work, O(asked / ranks) memory, messages only to the ranks where darts fall.
+/// suffice. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws leaves
+/// with a part of the layer in `store`. Cost: O(darts / ranks) work, O(asked / ranks) memory, messages only to the
+/// ranks where darts fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
-                               const LayerRegion& region, particles::Store& store);
+                               const LayerRegion& region, particles::Store& store,
+                               const std::function<void()>& between_volleys = {});
 
 /// The dart of a particle: a uniform position with the whole sphere inside region and container (any lateral position
 /// on periodic axes). [m]

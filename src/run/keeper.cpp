@@ -67,8 +67,16 @@ void Keeper::look() { look(due_by_clock(never) || (rhythm_.steps > 0 && pile_.st
 
 void Keeper::layer_ended() { look(due_by_clock(layer_interval) || rhythm_.steps > 0); }
 
+void Keeper::look_while_inserting(LocalIndex before) {
+  const Due due = agree(false);
+  waits_ = waits_ || due.checkpoint;
+  if (due.stop == Reason::none) return;
+  pile_.store.keep_first(before);
+  stop(due.stop);
+}
+
 // One reduction: what any rank was asked for, and what rank 0 thinks is due.
-void Keeper::look(bool due) {
+Keeper::Due Keeper::agree(bool due) {
   const double now = watch_.seconds();
   longest_gap_ = std::max(longest_gap_, now - looked_at_);
   looked_at_ = now;
@@ -80,9 +88,15 @@ void Keeper::look(bool due) {
     shared[1] = std::max(shared[1], static_cast<std::int64_t>(reason_to_stop()));
   }
   pile_.comm.max(shared);
-  if (shared[1] > 0) stop(static_cast<Reason>(shared[1]));
-  if (shared[0] == 0) return;
-  pile_.check();  // no checkpoint is written over a sound one by a state that is not
+  return {.checkpoint = shared[0] != 0, .stop = static_cast<Reason>(shared[1])};
+}
+
+void Keeper::look(bool due) {
+  const Due now = agree(due || waits_);
+  if (now.stop != Reason::none || now.checkpoint) pile_.check();  // nothing is written by a state that is not sound
+  if (now.stop != Reason::none) stop(now.stop);
+  if (!now.checkpoint) return;
+  waits_ = false;
   try {
     write();
   } catch (const Error& error) {
@@ -149,18 +163,18 @@ void Keeper::write() {
   longest_write_ = std::max(longest_write_, took);
   written_at_ = looked_at_ = watch_.seconds();
   last_step_ = pile_.steps;
-  any_written_ = true;
+  kept_ = true;
 }
 
 void Keeper::keep_going_without(const std::string& words) {
+  kept_ = false;
   log::warn(fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", pile_.steps, words));
   written_at_ = looked_at_ = watch_.seconds();
   last_step_ = pile_.steps;
 }
 
 void Keeper::stop(Reason reason) {
-  pile_.check();
-  if (!any_written_ || last_step_ != pile_.steps) write();
+  if (!kept_ || last_step_ != pile_.steps) write();
   constexpr std::array<const char*, 5> words{"", "a signal asked for it", "the STOP file is there",
                                              "the time limit is near", "--max-steps are done"};
   throw Error(

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/timer.hpp"
+#include "base/types.hpp"
 #include "input/rhythm.hpp"
 #include "run/course.hpp"
 #include "run/files.hpp"
@@ -29,11 +30,20 @@ class Keeper {
   void look();
   /// Collective. The same at the end of a layer, where a checkpoint is due sooner.
   void layer_ended();
+  /// Collective. Between the volleys of an insertion: a checkpoint asked for waits for the layer to be there; if the
+  /// run is to end, what the layer has inserted, all owned particles from slot `before` on, is dropped, and
+  /// stopped_early thrown after a checkpoint: insertion is a function of the seed, and begins anew.
+  void look_while_inserting(LocalIndex before);
   /// Collective. The pack is on the disk: removes the checkpoints.
   void finished();
 
  private:
   enum class Reason : std::int64_t { none, signal, stop_file, time_limit, step_limit };
+  struct Due {
+    bool checkpoint;
+    Reason stop;
+  };
+  [[nodiscard]] Due agree(bool due);
   void look(bool due);
   [[nodiscard]] bool due_by_clock(double least) const;
   [[nodiscard]] Reason reason_to_stop();
@@ -58,7 +68,8 @@ class Keeper {
   double looked_at_ = 0.0;                          // [s]
   double stop_seen_at_ = 0.0;                       // [s] last look for the STOP file
   double longest_write_ = 0.0, longest_gap_ = 0.0;  // [s]
-  bool any_written_ = false;
+  bool kept_ = false;                               // the state after last_step_ is on the disk
+  bool waits_ = false;                              // a checkpoint that was asked for during an insertion
 };
 
 }  // namespace packmpi::run

@@ -25,14 +25,16 @@
 namespace packmpi::run {
 namespace {
 
-void insert_layer(Pile& pile, output::LayerRow& row) {
+void insert_layer(Pile& pile, Keeper& keeper, output::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
   pile.store.set_ghosts(0);
   const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
                                 .bottom = pile.top(),
                                 .thickness = scene.in.layers.thickness,
                                 .first_id = pile.count};
-  const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store);
+  const LocalIndex before = pile.store.owned();
+  const auto look = [&] { keeper.look_while_inserting(before); };
+  const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store, look);
   pile.first_ids.push_back(pile.count);
   pile.energy_given += observe::energy_of(pile.comm, pile.store, scene, pile.count, pile.count + got.inserted);
   pile.count += got.inserted;
@@ -82,7 +84,7 @@ void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::Ru
 
 void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
   if (stand.phase == output::Phase::insertion) {
-    insert_layer(pile, stand.row);
+    insert_layer(pile, keeper, stand.row);
     pile.freeze_older();
     pile.balance();
     journal.layer_inserted(stand.row);

@@ -151,6 +151,39 @@ TEST(Insert, GivesVelocityAndAppends) {
   }
 }
 
+// What a run does that is stopped in an insertion and goes on later.
+TEST(Insert, LeftBetweenVolleysAndBegunAnew) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  const scene::Scene scene =
+      rsa_scene(3, {1.0, 0.8, 1.0}, walls, gaussian_radius(0.03, 0.003, 0.021, 0.039), 0.25, 1000);
+  const Ownership ownership(comm, test::rsa_grid(scene), Decomposition::slab);
+  particles::Store store(scene.features.layout());
+  const rsa::Insertion below = rsa::insert(comm, scene, ownership, {0, 0.0, 0.4, 0}, store);
+  const LocalIndex kept = store.owned();
+  const rsa::LayerRegion region{1, 0.4, 0.4, below.inserted};
+  particles::Store whole(scene.features.layout());
+  int volleys = 0;
+  const rsa::Insertion once = rsa::insert(comm, scene, ownership, region, whole, [&] { ++volleys; });
+  ASSERT_GT(volleys, 2);
+  for (const int stop : {0, 1, volleys / 2, volleys - 1}) {
+    int left = stop;
+    const auto leave = [&] {
+      if (left-- == 0) throw Error(ExitCode::stopped_early, "enough");
+    };
+    EXPECT_THROW((void)rsa::insert(comm, scene, ownership, region, store, leave), Error);
+    EXPECT_EQ(comm.sum(std::int64_t{store.owned()}) > below.inserted, stop > 0) << stop;
+    store.keep_first(kept);
+  }
+  const rsa::Insertion again = rsa::insert(comm, scene, ownership, region, store);
+  EXPECT_EQ(again.inserted, once.inserted);
+  EXPECT_EQ(again.darts, once.darts);
+  ASSERT_EQ(store.owned(), kept + whole.owned());
+  for (LocalIndex i = 0; i < whole.owned(); ++i) {
+    EXPECT_EQ(store.position(kept + i), whole.position(i));
+    EXPECT_EQ(store.ids()[static_cast<std::size_t>(kept + i)], whole.ids()[static_cast<std::size_t>(i)]);
+  }
+}
+
 // The complaint of insert(), checked to be the same on all ranks.
 std::string complaint(const scene::Scene& scene, const rsa::LayerRegion& region, Decomposition kind) {
   const comm::Comm comm(MPI_COMM_WORLD);

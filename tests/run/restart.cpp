@@ -5,11 +5,14 @@
 
 #include <array>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
 
+#include "output/checkpoint.hpp"
 #include "output/pack.hpp"
 #include "run/make_pack.hpp"
 #include "run/scene_change.hpp"
@@ -72,6 +75,22 @@ input::Input scene_of(const Kind& kind) {
   return in;
 }
 
+/// Restarts, and packs compared after them, for scripts/faults.sh.
+struct Counts : ::testing::Environment {
+  int restarts = 0, compared = 0, same = 0;
+  void TearDown() override {
+    const comm::Comm world(MPI_COMM_WORLD);
+    if (world.rank() != 0) return;
+    std::printf("count: restarts on up to %d ranks = %d\n", world.size(), restarts);
+    std::printf("count: packs of them compared with that of an untouched run = %d, bit-equal = %d\n", compared, same);
+  }
+};
+Counts& counts() {
+  static auto* const all = dynamic_cast<Counts*>(::testing::AddGlobalTestEnvironment(new Counts));
+  return *all;
+}
+[[maybe_unused]] const Counts& counts_from_the_start = counts();
+
 /// What a run left.
 struct Left {
   output::PackRows rows;
@@ -104,6 +123,7 @@ class Restart : public ::testing::TestWithParam<Kind> {
     options.folder = folder_;
     options.verbosity = log::Verbosity::quiet;
     change(options);
+    if (!options.restart.empty()) ++counts().restarts;
     MPI_Comm part = MPI_COMM_NULL;
     MPI_Comm_split(MPI_COMM_WORLD, world_.rank() < ranks ? 0 : 1, world_.rank(), &part);
     ExitCode code = ExitCode::done;
@@ -139,6 +159,12 @@ class Restart : public ::testing::TestWithParam<Kind> {
   }
 
   void expect_same(const Left& a, const Left& b) const {
+    compare(a, b);
+    ++counts().compared;
+    if (!HasFailure()) ++counts().same;
+  }
+
+  void compare(const Left& a, const Left& b) const {
     EXPECT_EQ(a.rows.id, b.rows.id);
     EXPECT_EQ(a.rows.position, b.rows.position);
     EXPECT_EQ(a.rows.velocity, b.rows.velocity);
@@ -295,6 +321,52 @@ TEST_P(RestartRules, ASignalOnOneRankStopsAll) {
     }
   }
   MPI_Comm_free(&part);
+  EXPECT_EQ(run(1, Decomposition::slab, [](Options& o) { o.restart = "auto"; }), ExitCode::done) << words_;
+  expect_same(left(), whole);
+}
+
+// Before anything is there, and at the second layer's beginning.
+TEST_P(RestartRules, StoppedInAnInsertion) {
+  const Left whole = untouched();
+  EXPECT_EQ(run(1, Decomposition::slab, [](Options& o) { o.force = true, o.max_hours = 1e-9; }),
+            ExitCode::stopped_early);
+  EXPECT_NE(words_.find("step 0 in layer 0"), std::string::npos) << words_;
+  in_.checkpoint.every = "100000 steps";  // so only layers' ends
+  EXPECT_EQ(
+      run(world_.size(), Decomposition::pencil, [](Options& o) { o.restart = "auto", o.max_steps = layer_steps + 10; }),
+      ExitCode::stopped_early)
+      << words_;
+  const std::string newer =
+      file(output::read_state(file("ckpt.A.hdf")).phase == output::Phase::settling ? "ckpt.A.hdf" : "ckpt.B.hdf");
+  world_.barrier();
+  if (world_.rank() == 0) fs::remove(newer);
+  world_.barrier();
+  EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.restart = "auto", o.max_hours = 1e-9; }),
+            ExitCode::stopped_early);
+  EXPECT_NE(words_.find(std::to_string(layer_steps) + " in layer 1"), std::string::npos) << words_;
+  EXPECT_EQ(run(1, Decomposition::slab, [](Options& o) { o.restart = "auto"; }), ExitCode::done) << words_;
+  expect_same(left(), whole);
+}
+
+// The names of the slots mean nothing: the newest sound one is taken.
+TEST_P(RestartRules, SwappedSlots) {
+  const Left whole = untouched();
+  in_.checkpoint.every = "60 steps";
+  EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.force = true, o.max_steps = layer_steps + 70; }),
+            ExitCode::stopped_early);
+  if (world_.rank() == 0) {
+    const std::int64_t a = output::read_state(file("ckpt.A.hdf")).serial;
+    const std::int64_t b = output::read_state(file("ckpt.B.hdf")).serial;
+    EXPECT_EQ(std::abs(a - b), 1);
+    fs::rename(file("ckpt.A.hdf"), file("ckpt"));
+    fs::rename(file("ckpt.B.hdf"), file("ckpt.A.hdf"));
+    fs::rename(file("ckpt"), file("ckpt.B.hdf"));
+  }
+  world_.barrier();
+  // one step more: the newest was at the end of the steps made so far
+  EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.restart = "auto", o.max_steps = 1; }),
+            ExitCode::stopped_early);
+  EXPECT_NE(words_.find("step " + std::to_string(layer_steps + 71)), std::string::npos) << words_;
   EXPECT_EQ(run(1, Decomposition::slab, [](Options& o) { o.restart = "auto"; }), ExitCode::done) << words_;
   expect_same(left(), whole);
 }
