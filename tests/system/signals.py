@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+"""Runs told to stop or to save themselves while they work, through mpirun: each ends as doc/restart.md says, and goes on to the bits
+of a run nobody touched.
+
+  signals.py SCRATCH -- command ...          (command: mpirun -n N packmpi)
+"""
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+try:
+    import h5py
+except ImportError:
+    sys.exit(77)   # skipped
+
+SCENE = """
+[container]
+size = [0.3, 0.3, 0.2]
+[particles]
+density = 1000.0
+youngs_modulus = 1.0e8
+poisson_ratio = 0.25
+radius = { distribution = "equal", value = 0.02 }
+[layers]
+thickness = 0.1
+fraction = 0.2
+duration = 0.6
+[jamming]
+gravity = 5.0
+[dynamics]
+time_step = 1.0e-4
+[output]
+log_every = 0.01
+[checkpoint]
+every = "off"
+"""
+scratch, command = Path(sys.argv[1]), sys.argv[sys.argv.index("--") + 1:]
+failures = []
+
+
+def start(folder, *options, mca=(), **environment):
+    words = [command[0], *mca, *command[1:], str(scratch / "signals.toml"), "-o", str(folder), "-q", "--restart", "auto", *options]
+    return subprocess.Popen(words, env={**os.environ, **environment}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            start_new_session=True)
+
+
+def until(condition, what, seconds=30.0):
+    end = time.time() + seconds
+    while time.time() < end:
+        if condition():
+            return
+        time.sleep(0.01)
+    sys.exit(f"signals: waited {seconds} s for {what}")
+
+
+def is_working(folder):
+    """Its time series grows: signals are caught by then, and steps are made."""
+    series = folder / "signals.steps.csv"
+    until(lambda: series.exists() and series.read_text().count("\n") > 2, f"{folder} to work")
+
+
+def digest(folder):
+    with h5py.File(folder / "signals.hdf") as file:
+        return hashlib.sha256(b"".join(file["particles"][name][...].tobytes() for name in sorted(file["particles"]))).hexdigest()
+
+
+def ranks_of(process):
+    """The programs that mpirun started."""
+    return [int(word) for word in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+def check(what, truth, text=""):
+    if not truth:
+        failures.append(what)
+        print(f"not so: {what}\n{text}")
+
+
+def end(what, process, folder, code, words, whole):
+    text, _ = process.communicate(timeout=60)
+    if code is not None:
+        check(f"{what}: exit code {code}, got {process.returncode}", process.returncode == code, text)
+    check(f"{what}: says '{words}'", words in text, text)
+    left = [f.name for f in folder.glob("*.ckpt.?.hdf")]
+    if code != 0:
+        check(f"{what}: leaves a checkpoint", left, text)
+        check(f"{what}: no pack", not (folder / "signals.hdf").exists())
+        text, _ = (again := start(folder)).communicate(timeout=60)
+        check(f"{what}: goes on, got {again.returncode}", again.returncode == 0, text)
+    check(f"{what}: the same bits", (folder / "signals.hdf").exists() and digest(folder) == whole)
+
+
+def main():
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir(parents=True)
+    (scratch / "signals.toml").write_text(SCENE)
+    untouched = scratch / "untouched"
+    process = start(untouched)
+    text, _ = process.communicate(timeout=120)
+    check("the untouched run", process.returncode == 0, text)
+    whole = digest(untouched)
+
+    process = start(folder := scratch / "usr1")
+    is_working(folder)
+    process.send_signal(signal.SIGUSR1)
+    until(lambda: list(folder.glob("*.ckpt.A.hdf")) or process.poll() is not None, "a checkpoint")
+    check("USR1: the run goes on after its checkpoint", process.poll() is None)
+    end("USR1", process, folder, 0, "", whole)
+
+    process = start(folder := scratch / "usr2")
+    is_working(folder)
+    process.send_signal(signal.SIGUSR2)
+    end("USR2", process, folder, 75, "a signal asked for it", whole)
+
+    # mpirun passes TERM on, waits all of its patience, and ends with a code of its own
+    process = start(folder := scratch / "term", mca=("--mca", "odls_base_sigkill_timeout", "3"))
+    is_working(folder)
+    process.send_signal(signal.SIGTERM)
+    end("TERM", process, folder, None, "", whole)
+
+    for name in ("TERM", "INT"):
+        process = start(folder := scratch / f"{name.lower()}_to_one_rank")
+        is_working(folder)
+        os.kill(ranks_of(process)[-1], getattr(signal, f"SIG{name}"))
+        end(f"{name} to one rank", process, folder, 75, "a signal asked for it", whole)
+
+    process = start(folder := scratch / "twice")
+    is_working(folder)
+    victim = ranks_of(process)[-1]
+    os.kill(victim, signal.SIGSTOP)   # both are there when it wakes
+    os.kill(victim, signal.SIGTERM)
+    os.kill(victim, signal.SIGINT)
+    os.kill(victim, signal.SIGCONT)
+    process.communicate(timeout=60)
+    check(f"a second one ends it at once, got {process.returncode}", process.returncode not in (0, 75))
+    check("a second one: no pack", not (folder / "signals.hdf").exists())
+
+    process = start(folder := scratch / "stop_file")
+    is_working(folder)
+    (folder / "STOP").touch()
+    process.wait(timeout=60)
+    (folder / "STOP").unlink()
+    end("STOP", process, folder, 75, "the STOP file is there", whole)
+
+    process = start(folder := scratch / "slurm", SLURM_JOB_END_TIME=str(int(time.time()) + 11))
+    end("SLURM_JOB_END_TIME", process, folder, 75, "the time limit is near", whole)
+    print(f"signals: {'failed: ' + '; '.join(failures) if failures else 'passed'}")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()
