@@ -2,17 +2,18 @@
 """Kills runs at random moments with SIGKILL, takes their folder away, goes on from what is left, and compares the packs with
 that of an untouched run.
 
-  scripts/faults.py [-n KILLS] [--build FOLDER] [--table FILE]
+  scripts/faults.py [-n KILLS] [--build FOLDER] [--tests] [--document FILE]
 
 Every trial starts `packmpi --restart auto` on 1 to 3 ranks and kills it at a random moment (mpirun and all ranks, one rank, or
 mpirun alone), does so once more, and then lets it end; trials go on until there were KILLS kills. A few more have their folder
-renamed or removed while they run. Exit code 0: every trial ended with the particle datasets of the untouched run. The counts are
-printed as a table, and written to FILE.
+renamed or removed while they run. Exit code 0: every trial ended with the particle datasets of the untouched run. With --tests the
+test programs run that count what they tried. The counts are printed as tables, and written into FILE (doc/reliability.md).
 """
 import argparse
 import hashlib
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -24,6 +25,7 @@ from pathlib import Path
 
 try:
     import h5py
+    import measuring
 except ImportError:
     print("faults: needs h5py (scripts/setup.sh --plots)")
     sys.exit(77)   # skipped, for ctest
@@ -149,15 +151,45 @@ ROWS = ["trials", "kills", "kills of mpirun and all ranks", "kills of one rank a
         "survived, the same bits", "lost", "wrong accepted"]
 
 
+# Programs that print "count: what = n, ..." or "extremes passed: n of m", and the ranks they run on.
+COUNTING_TESTS = {"run_restart": (1, 2, 3), "output_checkpoint": (1,), "output_faults": (1, 2), "run_extremes": (1,)}
+
+
+def count_tests(build):
+    """Rows "what | numbers" of the test programs, each line's numbers added over programs and ranks; True if all passed."""
+    counts, passed = {}, True
+    for name, all_ranks in COUNTING_TESTS.items():
+        for ranks in all_ranks:
+            done = subprocess.run(["mpirun", "-n", str(ranks), str(next(build.glob(f"tests/*/test_{name}")))], env=ENVIRONMENT,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            passed &= done.returncode == 0
+            if done.returncode != 0:
+                print(f"{name} failed on {ranks} ranks\n{done.stdout}")
+            for line in re.findall(r"^count: (.*)$", done.stdout, re.MULTILINE):
+                line = re.sub(r", \d+ ranks:|on up to \d+ ranks", lambda m: ":" if m[0].endswith(":") else "", line)
+                row = counts.setdefault(re.sub(r"\d+", "#", line), [])
+                row.append([int(n) for n in re.findall(r"= (\d+)", line)])
+            for got, asked in re.findall(r"^extremes passed: (\d+) of (\d+)$", done.stdout, re.MULTILINE):
+                counts.setdefault("rows of doc/extremes.md tested = #, passed = #", []).append([int(asked), int(got)])
+    rows = []
+    for line, numbers in counts.items():
+        totals = iter(sum(column) for column in zip(*numbers))
+        what, *more = re.sub(r"#", lambda _: str(next(totals)), line).split(" = ", 1)
+        rows.append(f"| {' '.join(what.split())} | {more[0].replace(' = ', ' ')} |")
+    return rows, passed
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-n", type=int, default=200)
     parser.add_argument("--build", default=ROOT / "build")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--table")
+    parser.add_argument("--tests", action="store_true")
+    parser.add_argument("--document")
     options = parser.parse_args()
     random.seed(options.seed)
-    program = Path(options.build).resolve() / "packmpi"
+    build = Path(options.build).resolve()
+    program = build / "packmpi"
     counts = Counter()
     with tempfile.TemporaryDirectory() as work:
         scene = Path(work) / "faults.toml"
@@ -177,11 +209,17 @@ def main():
             counts[result] += 1
             if result != "survived, the same bits":
                 print(f"trial {counts['trials']}: {result}")
-    table = "\n".join(["| what | count |", "|---|---|"] + [f"| {row} | {counts[row]} |" for row in ROWS])
-    print(table)
-    if options.table:
-        Path(options.table).write_text(table + "\n")
-    sys.exit(0 if counts["survived, the same bits"] == counts["trials"] else 1)
+    table = ["| what | count |", "|---|---|"] + [f"| {row} | {counts[row]} |" for row in ROWS]
+    right = counts["survived, the same bits"] == counts["trials"]
+    if options.tests:
+        rows, passed = count_tests(build)
+        table += rows
+        right &= passed
+    text = f"{measuring.made_by('scripts/faults.sh')}:\n\n" + "\n".join(table)
+    print(text)
+    if options.document:
+        measuring.write_block(options.document, "faults", text)
+    sys.exit(0 if right else 1)
 
 
 if __name__ == "__main__":

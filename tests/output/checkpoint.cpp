@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -180,10 +181,14 @@ TEST_P(Checkpoint, TruncatedAnywhereIsRefused) {
   write(comm_, path, testing::scattered(comm_, layout_, grains_, Spread::all));
   if (comm_.rank() != 0) return;
   const std::string whole = bytes_of(path);
+  int refused = 0;
   for (std::size_t k = 0; k < 64; ++k) {
     write_bytes(path, whole.substr(0, whole.size() * k / 64));
-    EXPECT_TRUE(refusal(path).has_value()) << "truncated to " << k << " of 64";
+    const bool right = refusal(path).has_value();
+    EXPECT_TRUE(right) << "truncated to " << k << " of 64";
+    refused += right ? 1 : 0;
   }
+  std::printf("count: checkpoints truncated = 64, refused = %d\n", refused);
   write_bytes(path, whole.substr(0, whole.size() - 1));
   EXPECT_TRUE(refusal(path).has_value());
   write_bytes(path, whole);
@@ -198,6 +203,7 @@ TEST_P(Checkpoint, AFlippedBitInAnyDatasetIsRefused) {
   std::vector<std::string> names{
       "/state", "/effective_input", "/particles/id", "/particles/position", "/particles/radius", "/particles/velocity"};
   if (rotation_) names.emplace_back("/particles/surface_speed");
+  int tried = 0, refused = 0;
   for (const std::string& name : names) {
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
@@ -210,10 +216,14 @@ TEST_P(Checkpoint, AFlippedBitInAnyDatasetIsRefused) {
       const std::size_t at = begin + (size - 1) * k / 15;
       damaged[at] = static_cast<char>(damaged[at] ^ (1 << k % 8));
       write_bytes(path, damaged);
-      EXPECT_TRUE(refusal(path).has_value()) << name << ", byte " << at - begin;
+      const bool right = refusal(path).has_value();
+      EXPECT_TRUE(right) << name << ", byte " << at - begin;
+      ++tried;
+      refused += right ? 1 : 0;
     }
     write_bytes(path, whole);
   }
+  std::printf("count: bits flipped in datasets of checkpoints = %d, refused = %d\n", tried, refused);
 }
 
 // Headers included: what is not refused is right. Some bytes of a file mean nothing.
@@ -230,6 +240,7 @@ TEST_P(Checkpoint, AFlippedBitAnywhereIsRefusedOrHarmless) {
     if (refusal(path)) ++refused;
   }
   EXPECT_GT(refused, tried / 3);
+  std::printf("count: bits flipped anywhere in checkpoints = %d, refused = %d\n", tried, refused);
 }
 
 TEST_P(Checkpoint, OtherFilesAreRefused) {
