@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes one pack for each of the paper's figures 4 to 11 and draws it: doc/images/figure_4.png .. figure_11.png.
 
-usage: scripts/figures.py [--program build/packmpi] [--images FOLDER] [--size pixels] [--set KEY=VALUE ...]
+usage: scripts/figures.py [--only 4 5 ...] [--program build/packmpi] [--images FOLDER] [--size pixels] [--set KEY=VALUE ...]
 
 The figures show packs of the four examples, with rotation and without. Two minutes of two cores; runs that are done
 are not repeated. 3D needs a virtual screen: scripts/setup.sh --render.
@@ -32,12 +32,13 @@ def main():
     parser.add_argument("--results", type=Path, default=common.ROOT / "results" / "figures")
     parser.add_argument("--images", type=Path, default=common.ROOT / "doc" / "images")
     parser.add_argument("--size", type=int, default=700, help="width in pixels, about (default 700)")
+    parser.add_argument("--only", type=int, nargs="+", choices=range(4, 12), default=range(4, 12), help="default: all")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
     options = parser.parse_args()
     options.program, options.results = options.program.resolve(), options.results.resolve()
     options.set.append("output.contacts=true")
     runs = {reproduce.Run(options, example, rotation, SEED): number
-            for (example, rotation), number in FIGURES.items()}
+            for (example, rotation), number in FIGURES.items() if number in options.only}
     sameness = reproduce.Sameness(options.program)
     reproduce.make([run for run in runs if not sameness.same(run)], options.program, os.cpu_count() or 1)
     options.images.mkdir(parents=True, exist_ok=True)

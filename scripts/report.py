@@ -141,23 +141,25 @@ def adapt(path):
 
 
 def sizes_of(pack):
-    """Diameters that a share of mass or number does not exceed, asked and got, and the largest distance of the curves."""
+    """What `packmpi analyze` tells as "sizes", for a program that does not yet."""
     r, *asked = packs.asked_curve(pack.scene()["particles"]["radius"])
     got_r, *got = packs.got_curve(pack.radius)
     found = {}
     for kind, curve, shares in zip(("number", "mass"), asked, got):
-        quantiles = {f"D{p}": (2.0 * np.interp(p / 100.0, curve, r), 2.0 * got_r[np.searchsorted(shares, p / 100.0)])
-                     for p in (10, 30, 50, 60, 90)}
+        sides = {"asked": lambda share: float(2.0 * np.interp(share, curve, r)),
+                 "got": lambda share: float(2.0 * got_r[np.searchsorted(shares, share)])}
+        found[kind] = {side: {f"d{p}": diameter(p / 100.0) for p in (10, 30, 50, 60, 90)} for side, diameter in sides.items()}
+        for d in found[kind].values():
+            d["cu"], d["cc"] = d["d60"] / d["d10"], d["d30"] ** 2 / (d["d10"] * d["d60"])
         above, below = (np.interp(np.nextafter(got_r, side * np.inf), r, curve) for side in (1, -1))   # of a jump
         before = np.searchsorted(got_r, got_r, side="left") - 1   # of the particles with the same radius
-        shares_up_to = shares[np.searchsorted(got_r, got_r, side="right") - 1]
-        distance = max(np.abs(shares_up_to - above).max(),
-                       np.abs(np.where(before < 0, 0.0, shares[before]) - below).max())
-        found[kind] = {"quantiles": quantiles, "kolmogorov": distance}
+        up_to = shares[np.searchsorted(got_r, got_r, side="right") - 1]
+        found[kind]["distance"] = max(float(np.abs(up_to - above).max()),
+                                      float(np.abs(np.where(before < 0, 0.0, shares[before]) - below).max()))
     return found
 
 
-def comparison(pack):
+def comparison(pack, analysis):
     got, layers = pack.summary, pack.layers
     rows = [["The pack"],
             ["particles", "–", number(pack.count), "–"],
@@ -168,18 +170,15 @@ def comparison(pack):
              percent(float(np.mean(layers["fraction_got"])), got["fraction_asked"])],
             ["φ below the height asked", "–", f"{pack.phi:.4f}", "–"],
             ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"]]
-    for kind, found in sizes_of(pack).items():
+    for kind, match in (analysis.get("sizes") or sizes_of(pack)).items():
+        asked, there = match["asked"], match["got"]
         rows.append([f"Diameters by {kind}"])
-        two = found["quantiles"]
-        for name, (wanted, there) in two.items():
-            rows.append([f"{name[0]}<sub>{name[1:]}</sub> [mm]", number(1000.0 * wanted), number(1000.0 * there),
-                         percent(there, wanted)])
-        for name, words, ratio in (("Cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>",
-                                    lambda side: two["D60"][side] / two["D10"][side]),
-                                   ("Cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)",
-                                    lambda side: two["D30"][side] ** 2 / (two["D10"][side] * two["D60"][side]))):
-            rows.append([words, number(ratio(0)), number(ratio(1)), percent(ratio(1), ratio(0))])
-        rows.append(["Kolmogorov distance", "–", number(float(found["kolmogorov"]), 3), "–"])
+        rows += [[f"D<sub>{name[1:]}</sub> [mm]", number(1000.0 * asked[name]), number(1000.0 * there[name]),
+                  percent(there[name], asked[name])] for name in asked if name.startswith("d")]
+        rows += [[words, number(asked[name]), number(there[name]), percent(there[name], asked[name])]
+                 for name, words in (("cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>"),
+                                     ("cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)"))]
+        rows.append(["Kolmogorov distance", "–", number(match["distance"], 3), "–"])
     return table(["", "asked", "got", "difference"], rows, "asked and got")
 
 
@@ -260,7 +259,7 @@ def page(pack, analysis, pixels):
             f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
             facts(pack, analysis), pictures(pack, folder, pixels),
             section("plots", "What it is like", plots(pack, analysis, folder)),
-            section("asked", "Asked and got", comparison(pack),
+            section("asked", "Asked and got", comparison(pack, analysis),
                     '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the asked and the got curve.</p>'),
             section("protocol", "Protocol", protocol(pack), layer_table(pack)),
             section("checks", "Checks", checks(pack), ledger(pack)),
