@@ -23,6 +23,8 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from common import ENVIRONMENT, ROOT
+
 try:
     import h5py
     import measuring
@@ -30,10 +32,6 @@ except ImportError:
     print("faults: needs h5py (scripts/setup.sh --plots)")
     sys.exit(77)   # skipped, for ctest
 
-ROOT = Path(__file__).resolve().parent.parent
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_hwloc_base_binding_policy="none",
-                   OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_btl_vader_single_copy_mechanism="none")
 SCENE = """
 [container]
 size = [0.4, 0.4, 0.25]
