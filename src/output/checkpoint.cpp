@@ -21,7 +21,10 @@ struct RecordRow {
 using Stores = std::span<const particles::Store* const>;
 
 std::vector<RecordRow> rows_here(Stores stores) {
+  std::size_t count = 0;
+  for (const particles::Store* store : stores) count += static_cast<std::size_t>(store->owned());
   std::vector<RecordRow> rows;
+  rows.reserve(count);
   for (const particles::Store* store : stores) {
     for (LocalIndex i = 0; i < store->owned(); ++i) {
       RecordRow row{store->ids()[static_cast<std::size_t>(i)], {}};
@@ -85,11 +88,11 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
   const std::string text = to_text(state);
   const IdBlocks blocks{state.count, comm.size()};
   std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
-  std::sort(rows.begin(), rows.end(), [](const RecordRow& a, const RecordRow& b) { return a.id < b.id; });
   const GlobalId begin = blocks.begin(comm.rank());
   const h5::Slab slab{static_cast<hsize_t>(state.count), static_cast<hsize_t>(begin), rows.size()};
   comm::agree_on(comm, [&] {
-    if (static_cast<GlobalId>(rows.size()) != blocks.begin(comm.rank() + 1) - begin) {
+    const bool all = static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin;
+    if (!all || !put_in_order(rows, begin, &RecordRow::id)) {
       throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
     }
   });

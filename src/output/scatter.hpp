@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -27,22 +29,23 @@ struct IdBlocks {
   }
 };
 
-/// Collective. Each row goes to the owner of row.*key; the rows that came here, in no promised order.
+/// Collective. Each row goes to the owner of row.*key; the rows that came here, in no promised order. Cost: O(rows).
 template <class Row>
 [[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
                                        GlobalId Row::*key) {
   static_assert(std::is_trivially_copyable_v<Row>);
-  std::sort(rows.begin(), rows.end(), [key](const Row& a, const Row& b) { return a.*key < b.*key; });
+  std::map<Rank, std::size_t> counts;
+  for (const Row& row : rows) ++counts[blocks.owner(row.*key)];
   std::vector<comm::Parcel> parcels;
-  for (std::size_t begin = 0; begin < rows.size();) {
-    const Rank to = blocks.owner(rows[begin].*key);
-    const GlobalId limit = blocks.begin(to + 1);
-    std::size_t end = begin;
-    while (end < rows.size() && rows[end].*key < limit) ++end;
-    const std::size_t size = (end - begin) * sizeof(Row);
-    parcels.push_back({to, std::vector<std::byte>(size)});
-    std::memcpy(parcels.back().bytes.data(), &rows[begin], size);
-    begin = end;
+  std::map<Rank, std::byte*> next;
+  for (const auto& [to, count] : counts) {
+    parcels.push_back({to, std::vector<std::byte>(count * sizeof(Row))});
+    next[to] = parcels.back().bytes.data();
+  }
+  for (const Row& row : rows) {
+    std::byte*& place = next[blocks.owner(row.*key)];
+    std::memcpy(place, &row, sizeof(Row));
+    place += sizeof(Row);
   }
   rows = {};  // the memory is needed for what comes
   const std::vector<comm::Parcel> incoming = comm::exchange(comm, std::move(parcels));
@@ -56,6 +59,21 @@ template <class Row>
     at += parcel.bytes.size() / sizeof(Row);
   }
   return rows;
+}
+
+/// Local. Puts the row with key `begin` + k into place k, in place. False if a key is there twice or none of
+/// begin .. begin + rows.size() - 1; then the rows are in no particular order. Cost: O(rows).
+template <class Row>
+[[nodiscard]] bool put_in_order(std::vector<Row>& rows, GlobalId begin, GlobalId Row::*key) {
+  const auto place = [&](std::size_t k) { return rows[k].*key - begin; };
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    while (place(k) != static_cast<GlobalId>(k)) {
+      const GlobalId to = place(k);
+      if (to < 0 || to >= static_cast<GlobalId>(rows.size()) || place(static_cast<std::size_t>(to)) == to) return false;
+      std::swap(rows[k], rows[static_cast<std::size_t>(to)]);
+    }
+  }
+  return true;
 }
 
 }  // namespace packmpi::output
