@@ -92,7 +92,8 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
   const h5::Slab slab{static_cast<hsize_t>(state.count), static_cast<hsize_t>(begin), rows.size()};
   comm::agree_on(comm, [&] {
     const bool all = static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin;
-    if (!all || !put_in_order(rows, begin, &RecordRow::id)) {
+    const auto out_of_order = [](const RecordRow& a, const RecordRow& b) { return a.id >= b.id; };
+    if (!all || std::ranges::adjacent_find(rows, out_of_order) != rows.end()) {
       throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
     }
   });

@@ -136,9 +136,6 @@ PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
 
   const IdBlocks blocks{total, comm.size()};
   block.rows = scatter(comm, blocks, std::move(rows), &ParticleRow::id);
-  if (!put_in_order(block.rows, blocks.begin(comm.rank()), &ParticleRow::id)) {  // then by id, to say which
-    std::sort(block.rows.begin(), block.rows.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  }
   comm::agree_on(comm,
                  [&] { check_complete(block.rows, blocks.begin(comm.rank()), blocks.begin(comm.rank() + 1), total); });
   block.particles = slab_of(comm, block.rows.size());

@@ -29,7 +29,35 @@ struct IdBlocks {
   }
 };
 
-/// Collective. Each row goes to the owner of row.*key; the rows that came here, in no promised order. Cost: O(rows).
+template <class Row, class What>
+void for_each_row(const std::vector<comm::Parcel>& parcels, What&& what) {
+  for (const comm::Parcel& parcel : parcels) {
+    for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(Row)) {
+      Row row;
+      std::memcpy(&row, parcel.bytes.data() + at, sizeof(Row));
+      what(row);
+    }
+  }
+}
+
+/// The row with key `begin` + k into rows[k]. False if a key came twice; all must be of begin .. begin + rows.size()
+/// - 1.
+template <class Row>
+[[nodiscard]] bool place_by_key(const std::vector<comm::Parcel>& parcels, GlobalId begin, GlobalId Row::*key,
+                                std::vector<Row>& rows) {
+  std::vector<bool> there(rows.size());
+  bool once = true;
+  for_each_row<Row>(parcels, [&](const Row& row) {
+    const auto k = static_cast<std::size_t>(row.*key - begin);
+    once = once && !there[k];
+    there[k] = true;
+    rows[k] = row;
+  });
+  return once;
+}
+
+/// Collective. Each row goes to the owner of row.*key; the rows that came here, by that key (equal keys in no promised
+/// order). Cost: O(rows) if every key of this rank's block came once, else they are sorted.
 template <class Row>
 [[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
                                        GlobalId Row::*key) {
@@ -52,28 +80,15 @@ template <class Row>
   std::size_t bytes = 0;
   for (const comm::Parcel& parcel : incoming) bytes += parcel.bytes.size();
   rows.resize(bytes / sizeof(Row));
+  const GlobalId begin = blocks.begin(comm.rank());
+  if (static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin &&
+      place_by_key(incoming, begin, key, rows)) {
+    return rows;
+  }
   std::size_t at = 0;
-  for (const comm::Parcel& parcel : incoming) {
-    if (parcel.bytes.empty()) continue;
-    std::memcpy(rows.data() + at, parcel.bytes.data(), parcel.bytes.size());
-    at += parcel.bytes.size() / sizeof(Row);
-  }
+  for_each_row<Row>(incoming, [&](const Row& row) { rows[at++] = row; });
+  std::sort(rows.begin(), rows.end(), [key](const Row& a, const Row& b) { return a.*key < b.*key; });
   return rows;
-}
-
-/// Local. Puts the row with key `begin` + k into place k, in place. False if a key is there twice or none of
-/// begin .. begin + rows.size() - 1; then the rows are in no particular order. Cost: O(rows).
-template <class Row>
-[[nodiscard]] bool put_in_order(std::vector<Row>& rows, GlobalId begin, GlobalId Row::*key) {
-  const auto place = [&](std::size_t k) { return rows[k].*key - begin; };
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    while (place(k) != static_cast<GlobalId>(k)) {
-      const GlobalId to = place(k);
-      if (to < 0 || to >= static_cast<GlobalId>(rows.size()) || place(static_cast<std::size_t>(to)) == to) return false;
-      std::swap(rows[k], rows[static_cast<std::size_t>(to)]);
-    }
-  }
-  return true;
 }
 
 }  // namespace packmpi::output
