@@ -65,9 +65,9 @@ def section(name, title, *parts):
     return f'<section id="{name}"><h2>{title}</h2>{"".join(part for part in parts if part)}</section>'
 
 
-def inline(path, kind, words, style=""):
+def inline(path, kind, words):
     data = base64.b64encode(Path(path).read_bytes()).decode()
-    return f'<img{style} alt="{html.escape(words)}" src="data:image/{kind};base64,{data}">'
+    return f'<img alt="{html.escape(words)}" src="data:image/{kind};base64,{data}">'
 
 
 # --- what the page says ---
@@ -89,17 +89,17 @@ def pictures(pack, folder, pixels):
     if pack.dimension == 2 and pack.pairs is not None:
         wanted = [(wanted[0][0] + ", with force chains: lines as thick as the contact forces", [])]
     wanted.append(("Coloured by the number of touching neighbours", ["--color", "contacts", "--no-chains"]))
-    out = []
+    drawn, notes = [], []
     for k, (words, options) in enumerate(wanted):
         path = folder / f"picture_{k}.png"
         wrong = picture_of(pack.path, path, "--size", pixels, *options)
-        out.append(f'<p class="note">No picture: {html.escape(wrong)}</p>' if wrong else
-                   f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>')
         if wrong:
+            notes.append(f'<p class="note">No picture: {html.escape(wrong)}</p>')
             break
+        drawn.append(f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>')
     if pack.dimension == 2 and pack.pairs is None:
-        out.append('<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>')
-    return f'<div class="pair">{"".join(out)}</div>'
+        notes.append('<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>')
+    return f'<div class="pair">{"".join(drawn)}</div>{"".join(notes)}'
 
 
 CAPTIONS = {
@@ -115,15 +115,15 @@ MISSING = {
 
 
 def plots(pack, analysis, folder):
-    out = []
+    drawn, notes = [], []
     for name, words in CAPTIONS.items():
         path = folder / f"{name}.svg"
-        if not plot.draw(name, pack, analysis, path):
-            out.append(f'<p class="note">{MISSING[name]}</p>')
-            continue
-        adapt(path)
-        out.append(f'<figure>{inline(path, "svg+xml", words)}<figcaption>{words}</figcaption></figure>')
-    return f'<div class="pair">{"".join(out)}</div>'
+        if plot.draw(name, pack, analysis, path):
+            adapt(path)
+            drawn.append(f'<figure>{inline(path, "svg+xml", words)}<figcaption>{words}</figcaption></figure>')
+        else:
+            notes.append(f'<p class="note">{MISSING[name]}</p>')
+    return f'<div class="pair">{"".join(drawn)}</div>{"".join(notes)}'
 
 
 def adapt(path):
