@@ -25,12 +25,14 @@ def missing(package, option):
     fail(f"the Python package {package} is missing for {sys.executable}; install it with: scripts/setup.sh --{option}")
 
 
-def picture_of(pack, picture, *options):
-    """Draws a pack by scripts/render.py, with few colours: a third of the bytes. What went wrong, or nothing."""
-    command = [sys.executable, ROOT / "scripts" / "render.py", pack, "-o", picture, *options]
+def pictures_of(pack, pictures, *options):
+    """Draws a pack by scripts/render.py, with few colours: a third of the bytes. `pictures` are the files that must then be
+    there. What went wrong, or nothing."""
+    command = [sys.executable, ROOT / "scripts" / "render.py", pack, *options]
     done = subprocess.run([str(word) for word in command], text=True, capture_output=True)
     if done.returncode != 0:
         return done.stderr.strip() or f"render.py ended with code {done.returncode}"
     from PIL import Image   # comes with matplotlib
-    Image.open(picture).quantize(200).save(picture, optimize=True)
+    for picture in pictures:
+        Image.open(picture).quantize(200).save(picture, optimize=True)
     return ""

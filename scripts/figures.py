@@ -21,7 +21,8 @@ FIGURES = {("5.1", "on"): 4, ("5.1", "off"): 5, ("5.2", "on"): 6, ("5.2", "off")
 
 def draw(run, number, images, size):
     """Coloured by the layer a particle came with, equal radii; by radius, graded ones; discs with their force chains."""
-    wrong = common.picture_of(run.folder / f"{run.name}.hdf", images / f"figure_{number}.png", "--size", size)
+    path = images / f"figure_{number}.png"
+    wrong = common.pictures_of(run.folder / f"{run.name}.hdf", [path], "-o", path, "--size", size)
     if wrong:
         common.fail(f"figure {number} could not be drawn: {wrong}")
 

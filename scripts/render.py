@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the height asked.
 
-usage: scripts/render.py PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed] [--size pixels] [--no-chains]
+usage: scripts/render.py PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed ...] [--size pixels] [--no-chains]
 
 3D is drawn by VTK on a virtual screen, 2D by matplotlib; scripts/setup.sh --render installs both.
-A 2D pack with /contacts (output.contacts = true) gets its force chains, lines as thick as the normal forces.
+Several colours make several pictures, picture.radius.png and so on. A 2D pack with /contacts (output.contacts = true)
+gets its force chains, lines as thick as the normal forces; of several pictures, the first.
 """
 import argparse
 import os
@@ -154,7 +155,7 @@ def main():
     parser = argparse.ArgumentParser(description="Draw a pack (NAME.hdf) as a PNG picture.")
     parser.add_argument("pack", help="pack file, NAME.hdf")
     parser.add_argument("-o", "--output", help="picture to write (default: NAME.png beside the pack)")
-    parser.add_argument("--color", choices=["radius", "layer", "contacts", "speed"],
+    parser.add_argument("--color", choices=["radius", "layer", "contacts", "speed"], nargs="+", default=[None],
                         help="what the colours show (default: radius, or layer if all radii are equal)")
     parser.add_argument("--size", type=int, default=1000, help="width in pixels, about (default 1000)")
     parser.add_argument("--no-chains", action="store_true", help="2D: leave out the force chains")
@@ -163,15 +164,19 @@ def main():
         fail("--size must be between 100 and 8000")
     path = options.output or os.path.splitext(options.pack)[0] + ".png"
     pack = Pack(options.pack)
-    colouring = Colouring(pack, options.color)
-    try:
-        if pack.dimension == 3:
-            draw_3d(pack, colouring, path, options.size)
-        else:
-            draw_2d(pack, colouring, path, options.size, not options.no_chains)
-    except OSError as error:
-        fail(f"cannot write {path}: {error}")
-    print(f"{path}: {pack.count} particles by {colouring.what}")
+    stem, ending = os.path.splitext(path)
+    for color in options.color:
+        colouring = Colouring(pack, color)
+        if len(options.color) > 1:
+            path = f"{stem}.{color}{ending}"
+        try:
+            if pack.dimension == 3:
+                draw_3d(pack, colouring, path, options.size)
+            else:
+                draw_2d(pack, colouring, path, options.size, not options.no_chains and color == options.color[0])
+        except OSError as error:
+            fail(f"cannot write {path}: {error}")
+        print(f"{path}: {pack.count} particles by {colouring.what}")
 
 
 if __name__ == "__main__":

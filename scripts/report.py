@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 import plot   # says what is missing
-from common import ACCENT, BACKGROUND, GOT, GRID, INK, OTHER, fail, picture_of
+from common import ACCENT, BACKGROUND, GOT, GRID, INK, OTHER, fail, pictures_of
 import numpy as np
 import packs
 
@@ -84,22 +84,20 @@ def facts(pack, analysis):
 
 
 def pictures(pack, folder, pixels):
-    """The pack from outside: sizes, or layers if they are equal; 3D also by contacts, discs with their force chains."""
-    wanted = [("Coloured by size" if np.ptp(pack.radius) > 0.0 else "Coloured by layer of insertion", [])]
+    """The pack from outside: sizes, or layers if they are equal; and contacts. Discs with their force chains."""
+    first, words = ("radius", "Coloured by size") if np.ptp(pack.radius) > 0.0 else ("layer", "Coloured by layer of insertion")
+    notes = ""
     if pack.dimension == 2 and pack.pairs is not None:
-        wanted = [(wanted[0][0] + ", with force chains: lines as thick as the contact forces", [])]
-    wanted.append(("Coloured by the number of touching neighbours", ["--color", "contacts", "--no-chains"]))
-    drawn, notes = [], []
-    for k, (words, options) in enumerate(wanted):
-        path = folder / f"picture_{k}.png"
-        wrong = picture_of(pack.path, path, "--size", pixels, *options)
-        if wrong:
-            notes.append(f'<p class="note">No picture: {html.escape(wrong)}</p>')
-            break
-        drawn.append(f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>')
-    if pack.dimension == 2 and pack.pairs is None:
-        notes.append('<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>')
-    return f'<div class="pair">{"".join(drawn)}</div>{"".join(notes)}'
+        words += ", with force chains: lines as thick as the contact forces"
+    elif pack.dimension == 2:
+        notes = '<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>'
+    shown = {folder / f"picture.{first}.png": words, folder / "picture.contacts.png": "Coloured by the number of touching neighbours"}
+    wrong = pictures_of(pack.path, shown, "-o", folder / "picture.png", "--size", pixels, "--color", first, "contacts")
+    if wrong:
+        return f'<p class="note">No pictures: {html.escape(wrong)}</p>'
+    drawn = "".join(f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>'
+                    for path, words in shown.items())
+    return f'<div class="pair">{drawn}</div>{notes}'
 
 
 CAPTIONS = {
