@@ -61,7 +61,7 @@ class Comm {
   Rank rank_ = 0;
   int size_ = 1;
   mutable bool odd_exchange_ = false;  // two exchanges in a row use different tags
-  friend std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing);
+  friend std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing, int longest_message);
 };
 
 /// Collective. Every rank returns, or every rank throws the complaint of the lowest rank that has one, with its code.
@@ -73,10 +73,10 @@ template <class Action>
 void agree_on(const Comm& comm, Action&& action);
 
 /// Collective. The sum of all ranks' terms, correctly independent of their order and of the number of ranks: each term
-/// is rounded to a multiple of 2^-96 of the power of two above the largest magnitude and added in 128-bit integers; the
+/// is rounded to a multiple of 2^-96 of the power of two above the largest magnitude and added in integers; the
 /// total is rounded to double once (twice where it is subnormal). No terms, or zeros only: +0.
 /// NaN or infinity in any term gives NaN on every rank; a total beyond double's range gives infinity.
-/// Errors: Error(numerical_failure) on every rank for more than 2^30 terms over all ranks. Cost: two reductions.
+/// Errors: Error(numerical_failure) on every rank for more than 2^30 terms on any. Cost: two reductions.
 [[nodiscard]] double exact_sum(const Comm& comm, std::span<const double> terms);
 /// The same for several sums at once: terms[k] are the terms of sum k; as many sums on every rank. Cost: two reductions
 /// in all.
@@ -84,9 +84,10 @@ void agree_on(const Comm& comm, Action&& action);
 
 /// Collective. Sends each parcel to its rank and returns what the others sent here, sorted by source rank.
 /// Nobody needs to know beforehand who sends to him (non-blocking consensus, Hoefler et al. 2010); no O(ranks) arrays.
-/// A parcel to oneself is delivered, an empty one too. At most one parcel per destination, each below 2 GiB (asserted).
-/// Cost: O(parcels) messages.
-[[nodiscard]] std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing);
+/// A parcel to oneself is delivered, an empty one too. At most one parcel per destination (asserted), of any length:
+/// it is sent in messages of at most `longest_message` bytes. Cost: O(parcels) messages.
+[[nodiscard]] std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing,
+                                           int longest_message = 1 << 30);
 
 template <class Action>
 void agree_on(const Comm& comm, Action&& action) {

@@ -1,20 +1,17 @@
-// Sums of doubles whose bits depend on no order: 128-bit integers are added, and integers commute.
+// Sums of doubles whose bits depend on no order: integers are added, and integers commute.
 #include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "comm/comm.hpp"
+#include "comm/limbs.hpp"
 
 namespace packmpi::comm {
 namespace {
 
-__extension__ using Int128 = __int128;
-__extension__ using Uint128 = unsigned __int128;
-
-constexpr int fraction_bits = 96;  // 2^30 terms of 2^96 stay below 2^127
-constexpr std::int64_t max_terms = std::int64_t{1} << 30U;
-constexpr std::size_t limbs = 4;                  // of 32 bits: 2^31 ranks of them fit an int64
-constexpr std::size_t words_per_sum = limbs + 1;  // and the number of terms
+constexpr int fraction_bits = 96;  // 2^30 terms of 2^96 stay below 2^127 on a rank; all ranks together need more
+constexpr std::size_t max_terms = std::size_t{1} << 30U;
+constexpr std::size_t words_per_sum = limb_count + 1;  // and the number of ranks with too many terms
 
 double magnitude(std::span<const double> terms) {
   double largest = 0.0;
@@ -38,8 +35,7 @@ Int128 fixed(double term, int exponent) {
 }
 
 Int128 local_sum(std::span<const double> terms, double largest) {
-  if (!(largest > 0.0) || static_cast<std::int64_t>(terms.size()) > max_terms)
-    return 0;  // not needed, or refused below
+  if (!(largest > 0.0) || terms.size() > max_terms) return 0;  // not needed, or refused below
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
   Int128 sum = 0;
@@ -47,24 +43,11 @@ Int128 local_sum(std::span<const double> terms, double largest) {
   return sum;
 }
 
-void split(Int128 sum, std::span<std::int64_t> out) {
-  for (std::size_t k = 0; k + 1 < limbs; ++k, sum >>= 32) out[k] = static_cast<std::int64_t>(sum & 0xffffffffU);
-  out[limbs - 1] = static_cast<std::int64_t>(sum);  // the top limb carries the sign
-}
-
-/// The limbs may each be larger than 32 bits by now; modulo 2^128 that is no matter.
-Int128 join(std::span<const std::int64_t> in) {
-  Uint128 sum = 0;
-  for (std::size_t k = 0; k < limbs; ++k) sum += static_cast<Uint128>(Int128{in[k]}) << (32 * k);
-  return static_cast<Int128>(sum);
-}
-
-double to_double(Int128 sum, double largest) {
+double total(std::span<const std::int64_t> limbs, double largest) {
   if (std::isnan(largest)) return largest;
-  if (sum == 0) return 0.0;
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
-  return std::ldexp(static_cast<double>(sum), exponent - fraction_bits);
+  return to_double(limbs, exponent - fraction_bits);
 }
 
 }  // namespace
@@ -79,15 +62,15 @@ std::vector<double> exact_sums(const Comm& comm, std::span<const std::vector<dou
   for (std::size_t k = 0; k < n; ++k) {
     const auto mine = std::span(words).subspan(k * words_per_sum, words_per_sum);
     split(local_sum(terms[k], largest[k]), mine);
-    mine[limbs] = static_cast<std::int64_t>(terms[k].size());
+    mine[limb_count] = terms[k].size() > max_terms ? 1 : 0;
   }
   comm.sum(std::span(words));
 
   std::vector<double> sums(n);
   for (std::size_t k = 0; k < n; ++k) {
     const auto all = std::span(words).subspan(k * words_per_sum, words_per_sum);
-    if (all[limbs] > max_terms) throw Error(ExitCode::numerical_failure, "an exact sum of more than 2^30 terms");
-    sums[k] = to_double(join(all), largest[k]);
+    if (all[limb_count] > 0) throw Error(ExitCode::numerical_failure, "an exact sum of more than 2^30 terms of a rank");
+    sums[k] = total(all.first(limb_count), largest[k]);
   }
   return sums;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -10,11 +11,11 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "comm/limbs.hpp"
 
 namespace packmpi::comm {
 namespace {
 
-__extension__ using Int128 = __int128;
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double denormal = std::numeric_limits<double>::denorm_min();
 
@@ -144,6 +145,35 @@ TEST(ExactSum, ManyEqualTermsFillTheTopLimb) {
   const Comm comm(MPI_COMM_WORLD);
   const std::vector<double> mine(1U << 16U, -0x1.fffffffffffffp0);
   EXPECT_EQ(exact_sum(comm, mine), -0x1.fffffffffffffp16 * comm.size());
+}
+
+// What thousands of ranks with 2^30 terms each would add up to.
+TEST(ExactSum, OfMoreThanTwoToTheThirtyTerms) {
+  using Limbs = std::array<std::int64_t, limb_count>;
+  const auto sum = [](std::initializer_list<std::pair<Int128, int>> terms) {  // a number, so many times
+    Limbs all{};
+    for (const auto& [number, times] : terms) {
+      Limbs limbs{};
+      split(number, limbs);
+      for (int k = 0; k < times; ++k) {
+        for (std::size_t l = 0; l < limb_count; ++l) all[l] += limbs[l];
+      }
+    }
+    return to_double(all, -96);
+  };
+  const Int128 one = 1;
+  EXPECT_EQ(sum({{one << 126, 1}}), 0x1p30);
+  EXPECT_EQ(sum({{one << 126, 1000}}), 1000 * 0x1p30);
+  EXPECT_EQ(sum({{-(one << 126), 1000}}), -1000 * 0x1p30);
+  EXPECT_EQ(sum({{-(one << 126), 2}}), -0x1p31);  // just what 128 bits hold
+  EXPECT_EQ(sum({{one << 126, 5000}, {-(one << 126), 4999}}), 0x1p30);
+  EXPECT_EQ(sum({{one << 126, 5000}, {-(one << 126), 5000}, {-one, 3}}), -0x3p-96);
+  EXPECT_EQ(bits(sum({{one << 126, 7}, {-(one << 126), 7}})), bits(0.0));
+  // Halves: 2^133 + 2^80 lies between two doubles, and a unit more or less decides.
+  EXPECT_EQ(sum({{one << 126, 128}, {one << 80, 1}}), 0x1p37);
+  EXPECT_EQ(sum({{one << 126, 128}, {one << 80, 1}, {one, 1}}), 0x1.0000000000001p37);
+  EXPECT_EQ(sum({{one << 126, 128}, {one << 80, 3}, {-one, 1}}), 0x1.0000000000001p37);
+  EXPECT_EQ(sum({{-(one << 126), 128}, {-(one << 80), 1}, {-one, 1}}), -0x1.0000000000001p37);
 }
 
 TEST(ExactSum, EndsOfTheRange) {

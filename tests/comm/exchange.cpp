@@ -55,7 +55,9 @@ void check(const Comm& comm, const Pattern& pattern, const std::vector<Parcel>& 
   }
 }
 
-void play(const Comm& comm, const Pattern& pattern) { check(comm, pattern, exchange(comm, outgoing(comm, pattern))); }
+void play(const Comm& comm, const Pattern& pattern, int longest_message = 1 << 30) {
+  check(comm, pattern, exchange(comm, outgoing(comm, pattern), longest_message));
+}
 
 TEST(Exchange, NobodySends) {
   const Comm comm(MPI_COMM_WORLD);
@@ -97,6 +99,13 @@ TEST(Exchange, LateRanksDoNotMixRounds) {
 TEST(Exchange, LargeParcels) {
   const Comm comm(MPI_COMM_WORLD);
   play(comm, {3, comm.size(), 100, 3000000});
+}
+
+TEST(Exchange, ParcelsLongerThanAMessage) {  // as those of more than 2 GiB are
+  const Comm comm(MPI_COMM_WORLD);
+  for (std::uint64_t round = 0; round < 50; ++round) {
+    play(comm, {round, comm.size(), 80, 40}, 1 + static_cast<int>(round % 9));
+  }
 }
 
 TEST(Exchange, MixesWithOtherCollectivesAndCommunicators) {
