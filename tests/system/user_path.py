@@ -56,6 +56,22 @@ def edit(scene, text):
     scene.write_text("\n".join("\n".join([name, *lines, ""]) for name, lines in starter.items()))
 
 
+def run(command, folder, environment):
+    """Output of a command, which must succeed."""
+    done = subprocess.run(command, shell=True, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
+    print(f"$ {command}\n{done.stdout[-1500:]}")
+    if done.returncode != 0:
+        sys.exit(f"exit code {done.returncode}")
+    return done.stdout
+
+
+def check_estimate(folder, environment):
+    """packmpi estimate knows the scene, in versions that have it; the page need not name it."""
+    if re.search(r"^  estimate\b", run("packmpi --help", folder, environment), re.MULTILINE):
+        expect("particles" in run("packmpi estimate gravel.toml --ranks 2", folder, environment), "no estimate of the particles")
+
+
 def check_page(folder):
     """It has the pack's count, and as many images as there should be."""
     page = (folder / "gravel.html").read_text()
@@ -93,12 +109,9 @@ def main():
                 if command.startswith("lmp ") and not shutil.which("lmp"):
                     print("passed over: LAMMPS is not installed (scripts/setup.sh --readers)")
                     continue
-                done = subprocess.run(command, shell=True, cwd=folder, env=environment, text=True,
-                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-                print(f"$ {command}\n{done.stdout[-1500:]}")
-                if done.returncode != 0:
-                    sys.exit(f"exit code {done.returncode}")
-                said[command] = done.stdout
+                said[command] = run(command, folder, environment)
+                if command.startswith("packmpi check"):
+                    check_estimate(folder, environment)
         else:
             problems.append(f"a block in {language}, of which this test knows nothing")
     with h5py.File(folder / "gravel.hdf") as pack:
