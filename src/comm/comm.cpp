@@ -30,18 +30,6 @@ double value_of(std::int64_t key) {
   return std::bit_cast<double>(flip_negative(key));
 }
 
-std::int64_t reduce(MPI_Comm comm, std::int64_t mine, MPI_Op operation) {
-  std::int64_t all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, operation, comm);
-  return all;
-}
-
-void reduce(MPI_Comm comm, std::span<std::int64_t> values, MPI_Op operation) {
-  const int count = count_of(values.size());
-  // NOLINTNEXTLINE(mpi-type-mismatch): the check does not know that int64_t is long here
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), count, MPI_INT64_T, operation, comm);
-}
-
 }  // namespace
 
 Comm::Comm(MPI_Comm parent) {
@@ -67,19 +55,40 @@ Comm::Comm(Comm&& other) noexcept
     : comm_(std::exchange(other.comm_, MPI_COMM_NULL)),
       rank_(other.rank_),
       size_(other.size_),
-      odd_exchange_(other.odd_exchange_) {}
+      odd_exchange_(other.odd_exchange_),
+      counters_(other.counters_) {}
+
+std::int64_t Comm::reduce(std::int64_t mine, MPI_Op operation) const {
+  ++counters_.reductions;
+  std::int64_t all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, operation, comm_);
+  return all;
+}
+
+void Comm::reduce(std::span<std::int64_t> values, MPI_Op operation) const {
+  ++counters_.reductions;
+  const int count = count_of(values.size());
+  // NOLINTNEXTLINE(mpi-type-mismatch): the check does not know that int64_t is long here
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), count, MPI_INT64_T, operation, comm_);
+}
+
+void Comm::count(Purpose purpose, Traffic traffic) const noexcept {
+  Traffic& sent = counters_.sent[static_cast<std::size_t>(purpose)];
+  sent.messages += traffic.messages;
+  sent.bytes += traffic.bytes;
+}
 
 void Comm::barrier() const { MPI_Barrier(comm_); }
 
-std::int64_t Comm::sum(std::int64_t mine) const { return reduce(comm_, mine, MPI_SUM); }
-std::int64_t Comm::min(std::int64_t mine) const { return reduce(comm_, mine, MPI_MIN); }
-std::int64_t Comm::max(std::int64_t mine) const { return reduce(comm_, mine, MPI_MAX); }
+std::int64_t Comm::sum(std::int64_t mine) const { return reduce(mine, MPI_SUM); }
+std::int64_t Comm::min(std::int64_t mine) const { return reduce(mine, MPI_MIN); }
+std::int64_t Comm::max(std::int64_t mine) const { return reduce(mine, MPI_MAX); }
 
 double Comm::min(double mine) const { return value_of(min(key_of(mine, Limits::min()))); }
 double Comm::max(double mine) const { return value_of(max(key_of(mine, Limits::max()))); }
 
-void Comm::sum(std::span<std::int64_t> values) const { reduce(comm_, values, MPI_SUM); }
-void Comm::max(std::span<std::int64_t> values) const { reduce(comm_, values, MPI_MAX); }
+void Comm::sum(std::span<std::int64_t> values) const { reduce(values, MPI_SUM); }
+void Comm::max(std::span<std::int64_t> values) const { reduce(values, MPI_MAX); }
 
 void Comm::max(std::span<double> values) const {
   std::vector<std::int64_t> keys(values.size());
@@ -89,6 +98,7 @@ void Comm::max(std::span<double> values) const {
 }
 
 std::int64_t Comm::sum_below(std::int64_t mine) const {
+  ++counters_.reductions;
   std::int64_t below = 0;
   MPI_Exscan(&mine, &below, 1, MPI_INT64_T, MPI_SUM, comm_);
   return rank_ == 0 ? 0 : below;  // MPI leaves rank 0's result undefined
@@ -102,6 +112,14 @@ std::string Comm::broadcast(Rank root, std::string_view words) const {
   for (std::size_t done = 0; done < all.size(); done += piece) {
     MPI_Bcast(all.data() + done, count_of(std::min(piece, all.size() - done)), MPI_CHAR, root, comm_);
   }
+  return all;
+}
+
+std::vector<std::int64_t> Comm::gather(std::span<const std::int64_t> mine) const {
+  std::vector<std::int64_t> all(rank_ == 0 ? mine.size() * static_cast<std::size_t>(size_) : 0);
+  const int count = count_of(mine.size());
+  // NOLINTNEXTLINE(mpi-type-mismatch): as in reduce()
+  MPI_Gather(mine.data(), count, MPI_INT64_T, all.data(), count, MPI_INT64_T, 0, comm_);
   return all;
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/types.hpp"
+#include "comm/traffic.hpp"
 
 namespace packmpi::comm {
 
@@ -55,13 +56,25 @@ class Comm {
   [[nodiscard]] std::int64_t sum_below(std::int64_t mine) const;
   /// Rank `root`'s bytes on every rank. Collective.
   [[nodiscard]] std::string broadcast(Rank root, std::string_view words) const;
+  /// Every rank's `mine`, rank after rank, on rank 0; nothing on the others. As many values on each. Collective. Not
+  /// for the step loop: O(ranks) memory on rank 0.
+  [[nodiscard]] std::vector<std::int64_t> gather(std::span<const std::int64_t> mine) const;
+
+  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  /// Local. Books messages that a library sends on this communicator for us.
+  void count(Purpose purpose, Traffic traffic) const noexcept;
 
  private:
+  [[nodiscard]] std::int64_t reduce(std::int64_t mine, MPI_Op operation) const;
+  void reduce(std::span<std::int64_t> values, MPI_Op operation) const;
+
   MPI_Comm comm_ = MPI_COMM_NULL;
   Rank rank_ = 0;
   int size_ = 1;
   mutable bool odd_exchange_ = false;  // two exchanges in a row use different tags
-  friend std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing, int longest_message);
+  mutable Counters counters_;
+  friend std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing, Purpose purpose,
+                                      int longest_message);
 };
 
 /// Collective. Every rank returns, or every rank throws the complaint of the lowest rank that has one, with its code.
@@ -85,9 +98,9 @@ void agree_on(const Comm& comm, Action&& action);
 /// Collective. Sends each parcel to its rank and returns what the others sent here, sorted by source rank.
 /// Nobody needs to know beforehand who sends to him (non-blocking consensus, Hoefler et al. 2010); no O(ranks) arrays.
 /// A parcel to oneself is delivered, an empty one too. At most one parcel per destination (asserted), of any length:
-/// it is sent in messages of at most `longest_message` bytes. Cost: O(parcels) messages.
+/// it is sent in messages of at most `longest_message` bytes. Cost: O(parcels) messages, counted as sent for `purpose`.
 [[nodiscard]] std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing,
-                                           int longest_message = 1 << 30);
+                                           Purpose purpose = Purpose::other, int longest_message = 1 << 30);
 
 template <class Action>
 void agree_on(const Comm& comm, Action&& action) {

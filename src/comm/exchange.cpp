@@ -19,7 +19,8 @@ void check(const Comm& comm, const std::vector<Parcel>& outgoing) {
 }
 
 // MPI counts in ints, so a long parcel is several messages; an empty one is one, too.
-std::vector<MPI_Request> send(const Comm& comm, const std::vector<Parcel>& outgoing, int tag, int longest) {
+std::vector<MPI_Request> send(const Comm& comm, const std::vector<Parcel>& outgoing, int tag, Purpose purpose,
+                              int longest) {
   std::vector<MPI_Request> requests;
   const auto most = static_cast<std::size_t>(longest);
   for (const Parcel& parcel : outgoing) {
@@ -30,6 +31,7 @@ std::vector<MPI_Request> send(const Comm& comm, const std::vector<Parcel>& outgo
       requests.emplace_back();
       MPI_Issend(parcel.bytes.data() + at, static_cast<int>(count), MPI_BYTE, parcel.rank, tag, comm.handle(),
                  &requests.back());
+      comm.count(purpose, {1, static_cast<std::int64_t>(count)});
       at += count;
     } while (at < parcel.bytes.size());
   }
@@ -69,14 +71,15 @@ void receive_until_all_ranks_are_done(const Comm& comm, int tag, std::vector<MPI
 
 }  // namespace
 
-std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing, int longest_message) {
+std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing, Purpose purpose, int longest_message) {
   assert(longest_message > 0);
   check(comm, outgoing);
+  ++comm.counters_.exchanges;
   // A rank that has left this exchange may send in the next one while another still receives in this one; nobody can be
   // two ahead, for the barrier of the next needs all. So two tags in turn keep them apart.
   const int tag = comm.odd_exchange_ ? 1 : 0;
   comm.odd_exchange_ = !comm.odd_exchange_;
-  std::vector<MPI_Request> sends = send(comm, outgoing, tag, longest_message);
+  std::vector<MPI_Request> sends = send(comm, outgoing, tag, purpose, longest_message);
   std::vector<Parcel> incoming;
   receive_until_all_ranks_are_done(comm, tag, sends, incoming);
   for (Parcel& parcel : outgoing) {

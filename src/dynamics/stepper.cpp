@@ -38,7 +38,10 @@ void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborh
                       const Moment& start) {
   for (std::int64_t step = 0; step < steps; ++step) {
     advance_one(store, neighborhood);
-    particle_steps_ += store.owned();
+    work_.particle_steps += store.owned();
+    work_.frozen_steps += neighborhood.frozen().owned();
+    work_.ghost_steps += neighborhood.halo().ghosts();
+    work_.pair_steps += std::ssize(neighborhood.pairs().first);
     ++since_look_;
     const neighbor::Alarm alarm = neighborhood.follow(store, last_.max_speed, stage_.time_step, alarm_of_step(store));
     if (alarm == neighbor::Alarm::none) continue;

@@ -16,6 +16,14 @@ namespace packmpi::dynamics {
 /// A look at all overlaps costs about a step: so many steps lie between two, unless the largest force doubles.
 inline constexpr std::int64_t rest_between_looks = 100;
 
+/// What a rank has worked on since the beginning: numbers of a step, summed over the steps. Exact.
+struct Work {
+  std::int64_t particle_steps = 0;  ///< owned, moving
+  std::int64_t frozen_steps = 0;    ///< owned, frozen: they cost nothing
+  std::int64_t ghost_steps = 0;     ///< copies of other ranks' moving particles, refreshed
+  std::int64_t pair_steps = 0;      ///< pairs of the contact list
+};
+
 /// Advances a store in time: kernel, then ghosts and lists. Holds the integer accumulators.
 class Stepper {
  public:
@@ -38,7 +46,7 @@ class Stepper {
   [[nodiscard]] const Law& law() const noexcept { return law_; }  ///< of the stage in use
   /// Largest contact force and speed bound of the last step, this rank. [N], [m/s]
   [[nodiscard]] const StepReport& last() const noexcept { return last_; }
-  [[nodiscard]] std::int64_t particle_steps() const noexcept { return particle_steps_; }  ///< this rank, so far
+  [[nodiscard]] const Work& work() const noexcept { return work_; }  ///< this rank, so far
   /// Null if theta is 0.
   [[nodiscard]] const Implicit* implicit() const noexcept { return implicit_.get(); }
   [[nodiscard]] std::size_t bytes() const noexcept { return ring_.capacity() * sizeof(std::int64_t); }
@@ -66,7 +74,7 @@ class Stepper {
   std::int64_t ring_mask_ = 0;
   StepReport last_;
   bool near_in_range_ = true;
-  std::int64_t particle_steps_ = 0;
+  Work work_;
 };
 
 }  // namespace packmpi::dynamics

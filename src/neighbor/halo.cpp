@@ -83,9 +83,10 @@ void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
     send_slots_.insert(send_slots_.end(), to.slots.begin(), to.slots.end());
   }
   messages_per_refresh_ = std::ranges::count_if(sends, [](const Sends& to) { return !to.slots.empty(); });
-  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing));
+  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), comm::Purpose::halo);
 
   const std::size_t record = layout_.record_bytes();
+  comm::Traffic setup;              // what PetscSFSetUp sends: to each origin how many ghosts, then which
   std::vector<PetscSFNode> origin;  // where each ghost lives: rank and place in that rank's send buffer
   for (const comm::Parcel& parcel : incoming) {
     std::int64_t first_root = 0;
@@ -93,6 +94,10 @@ void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
     const std::size_t count = (parcel.bytes.size() - sizeof first_root) / (sizeof(GlobalId) + record);
     const auto before = static_cast<LocalIndex>(origin.size());
     store.set_ghosts(before + static_cast<LocalIndex>(count));
+    if (count > 0) {
+      setup.messages += 2;
+      setup.bytes += static_cast<std::int64_t>((1 + count) * sizeof(PetscInt));
+    }
     const std::byte* in = parcel.bytes.data() + sizeof first_root;
     for (std::size_t k = 0; k < count; ++k) {
       const LocalIndex slot = store.owned() + before + static_cast<LocalIndex>(k);
@@ -108,6 +113,7 @@ void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
   check(PetscSFSetGraph(graph_->sf, static_cast<PetscInt>(send_slots_.size()), static_cast<PetscInt>(origin.size()),
                         nullptr, PETSC_OWN_POINTER, origin.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(graph_->sf));
+  comm_->count(comm::Purpose::halo, setup);
   const auto live = static_cast<std::size_t>(layout_.live_doubles());
   resize_tightly(send_buffer_, send_slots_.size() * live);
   resize_tightly(receive_buffer_, origin.size() * live);
@@ -140,8 +146,8 @@ void Halo::refresh(particles::Store& store) {
   for (std::size_t k = 0; k < arrival_slot_.size(); ++k) {
     scatter_live(layout_, receive_buffer_.data() + k * live, store.record(arrival_slot_[k]));
   }
-  counters_.messages += messages_per_refresh_;
-  counters_.bytes += static_cast<std::int64_t>(send_buffer_.size() * sizeof(double));
+  comm_->count(comm::Purpose::ghosts,
+               {messages_per_refresh_, static_cast<std::int64_t>(send_buffer_.size() * sizeof(double))});
 }
 
 void Halo::share(std::span<std::int64_t> values) const {
@@ -151,6 +157,8 @@ void Halo::share(std::span<std::int64_t> values) const {
   check(PetscSFBcastBegin(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
   check(PetscSFBcastEnd(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
   for (std::size_t k = 0; k < in.size(); ++k) values[static_cast<std::size_t>(arrival_slot_[k])] = in[k];
+  comm_->count(comm::Purpose::ghosts,
+               {messages_per_refresh_, static_cast<std::int64_t>(out.size() * sizeof(std::int64_t))});
 }
 
 std::size_t Halo::bytes() const noexcept {

@@ -34,18 +34,15 @@ class Halo {
   void order_ghosts(particles::Store& store, const std::vector<LocalIndex>& place);
 
   /// Collective. Position, velocity and spin of every ghost from its owner. One message for each neighbour.
+  /// Counted on the communicator as sent for ghosts; plan() as for the halo.
   void refresh(particles::Store& store);
 
   /// Collective. A number of each owned particle to its ghosts: values[slot], as long as the store at the last plan().
   /// Entries of slots that are not the halo's stay.
   void share(std::span<std::int64_t> values) const;
 
-  /// Exact counters since construction.
-  struct Counters {
-    std::int64_t messages = 0;  ///< sent in refresh()
-    std::int64_t bytes = 0;     ///< sent in refresh()
-  };
-  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  /// Copies of other ranks' particles that refresh() brings up to date.
+  [[nodiscard]] LocalIndex ghosts() const noexcept { return static_cast<LocalIndex>(arrival_slot_.size()); }
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
 
  private:
@@ -57,7 +54,6 @@ class Halo {
   std::vector<LocalIndex> arrival_slot_;  // slot of the k-th arriving ghost: the leaves
   std::vector<double> send_buffer_, receive_buffer_;
   std::int64_t messages_per_refresh_ = 0;
-  Counters counters_;
 };
 
 }  // namespace packmpi::neighbor

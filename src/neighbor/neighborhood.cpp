@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/grow.hpp"
+#include "base/timer.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::neighbor {
@@ -54,8 +55,9 @@ void Neighborhood::thaw(particles::Store& store) {
 }
 
 void Neighborhood::rebuild(particles::Store& store) {
+  const Stopwatch watch;
   store.set_ghosts(0);
-  migrate(store);
+  migrate(store, comm::Purpose::migration);
   sort_owned(store);
   halo_.plan(store, choose_sends(store));
   sort_ghosts(store);
@@ -70,29 +72,45 @@ void Neighborhood::rebuild(particles::Store& store) {
   if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
   build_walls(store);
   drift_ = 0.0;
-  ++rebuilds_;
+  ++effort_.rebuilds;
+  effort_.candidates += candidates_;
+  effort_.rebuilding += watch.seconds();
+}
+
+void Neighborhood::refresh_in_time(particles::Store& store) {
+  if (comm_->size() == 1) return;
+  const Stopwatch watch;
+  halo_.refresh(store);
+  effort_.refreshing += watch.seconds();
+}
+
+void Neighborhood::meet(std::array<double, 2>& shared) {
+  if (comm_->size() == 1) return comm_->max(shared);
+  const Stopwatch watch;
+  comm_->max(shared);
+  effort_.waiting += watch.seconds();
 }
 
 Alarm Neighborhood::follow(particles::Store& store, double max_speed, double time_step, Alarm mine) {
   drift_ += max_speed * time_step;
   if (!std::isfinite(drift_)) mine = Alarm::fault;
   std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_, static_cast<double>(mine)};
-  comm_->max(shared);
+  meet(shared);
   const auto alarm = static_cast<Alarm>(static_cast<int>(shared[1]));
   const double limit = 0.5 * scene_->skin;
   if (alarm == Alarm::fault || shared[0] <= limit) {
-    halo_.refresh(store);
+    refresh_in_time(store);
     return alarm;
   }
   drift_ = largest_displacement(store);
   if (comm_->max(drift_) <= live_on * limit) {
-    halo_.refresh(store);
+    refresh_in_time(store);
     return alarm;
   }
   bool all_inside = true;
   for (LocalIndex i = 0; i < store.owned() && all_inside; ++i) all_inside = is_inside(store, i);
   if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) {
-    halo_.refresh(store);
+    refresh_in_time(store);
     return Alarm::fault;
   }
   rebuild(store);
@@ -111,7 +129,7 @@ bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const 
   return inside;
 }
 
-void Neighborhood::migrate(particles::Store& store) const {
+void Neighborhood::migrate(particles::Store& store, comm::Purpose purpose) const {
   if (comm_->size() == 1) return;
   const std::size_t record = store.layout().record_bytes();
   std::vector<comm::Parcel> outgoing;
@@ -129,7 +147,7 @@ void Neighborhood::migrate(particles::Store& store) const {
     parcel->bytes.insert(parcel->bytes.end(), id, id + sizeof(GlobalId));
     parcel->bytes.insert(parcel->bytes.end(), body, body + record);
   }
-  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing));
+  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), purpose);
   if (staying.size() < static_cast<std::size_t>(store.owned())) store.keep(staying);
   std::vector<double> body(static_cast<std::size_t>(store.layout().stride));
   for (const comm::Parcel& parcel : incoming) {
@@ -217,7 +235,7 @@ void Neighborhood::add_still(particles::Store& store) {
   const double range = scene_->column_width() * (1.0 + 1e-12);
   if (!still_arranged_) {
     still_.store().set_ghosts(0);
-    migrate(still_.store());
+    migrate(still_.store(), comm::Purpose::frozen);
     still_.arrange(*ownership_, columns_, range);
     still_arranged_ = true;
   }

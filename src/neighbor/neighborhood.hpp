@@ -20,6 +20,15 @@ namespace packmpi::neighbor {
 /// must not be.
 enum class Alarm : int { none = 0, look = 1, fault = 2 };
 
+/// Exact counts of a rank since the beginning, and where its time went.
+struct Effort {
+  std::int64_t rebuilds = 0;
+  std::int64_t candidates = 0;  ///< pairs looked at for contact lists
+  double rebuilding = 0.0;      ///< [s] in rebuilds
+  double refreshing = 0.0;      ///< [s] in refreshes of ghosts; with other ranks only
+  double waiting = 0.0;         ///< [s] in the reduction of a step; with other ranks only
+};
+
 /// Lists and ghosts of the particles of a store. No result of a run depends on when or how they are built.
 class Neighborhood {
  public:
@@ -62,14 +71,17 @@ class Neighborhood {
   [[nodiscard]] const Halo& halo() const noexcept { return halo_; }
   /// Pairs of particles looked at for the contact lists in the last rebuild.
   [[nodiscard]] std::int64_t candidates() const noexcept { return candidates_; }
-  [[nodiscard]] std::int64_t rebuilds() const noexcept { return rebuilds_; }
+  [[nodiscard]] std::int64_t rebuilds() const noexcept { return effort_.rebuilds; }
+  [[nodiscard]] const Effort& effort() const noexcept { return effort_; }
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated
 
   /// Moving particles in each own column, in the order of Ownership::columns(); the weights of the balance. Local.
   [[nodiscard]] std::vector<std::int64_t> column_counts(const particles::Store& store) const;
 
  private:
-  void migrate(particles::Store& store) const;  // collective
+  void migrate(particles::Store& store, comm::Purpose purpose) const;  // collective
+  void refresh_in_time(particles::Store& store);                       // collective
+  void meet(std::array<double, 2>& shared);                            // collective: the reduction of a step
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
   void sort_ghosts(particles::Store& store);
@@ -98,8 +110,9 @@ class Neighborhood {
   // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.
   std::array<std::vector<double>, 3> x_;
   std::vector<double> radius_;
-  double drift_ = 0.0;  // bound of any displacement since the rebuild, this rank [m]
-  std::int64_t rebuilds_ = 0, candidates_ = 0;
+  double drift_ = 0.0;           // bound of any displacement since the rebuild, this rank [m]
+  std::int64_t candidates_ = 0;  // in the last rebuild
+  Effort effort_;
 };
 
 }  // namespace packmpi::neighbor

@@ -54,7 +54,9 @@ void Still::give_back(particles::Store& to) {
 void Still::arrange(const scene::Ownership& ownership, const LocalColumns& columns, double range) {
   store_.set_ghosts(0);
   sort(ownership, columns);
-  add_copies(comm::exchange(*comm_, copies(ownership, columns, range)), ownership, columns);
+  const std::vector<comm::Parcel> arrived =
+      comm::exchange(*comm_, copies(ownership, columns, range), comm::Purpose::frozen);
+  add_copies(arrived, ownership, columns);
 }
 
 void Still::sort(const scene::Ownership& ownership, const LocalColumns& columns) {

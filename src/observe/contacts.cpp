@@ -68,6 +68,7 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   const double total_overlap = comm::exact_sum(comm, sums.overlaps);
   const auto particles = static_cast<double>(std::max<std::int64_t>(counts[0], 1));
   result.pairs = counts[1];
+  result.pairs_here = std::ssize(sums.overlaps);
   result.coordination = static_cast<double>(counts[3]) / particles;
   result.rattlers = static_cast<double>(counts[2]) / particles;
   result.mean_overlap = counts[1] > 0 ? total_overlap / static_cast<double>(counts[1]) : 0.0;

@@ -64,6 +64,7 @@ struct Ledger {
 struct Contacts {
   std::vector<std::int32_t> of_particle;  ///< touching particles of each owned slot (walls not counted)
   std::int64_t pairs = 0;                 ///< touching pairs, over all ranks
+  std::int64_t pairs_here = 0;            ///< of them, counted by this rank; each pair by one
   double coordination = 0.0;              ///< mean of of_particle over all ranks
   double rattlers = 0.0;      ///< share of particles with fewer than dimension + 1 contacts (walls counted here)
   double mean_overlap = 0.0;  ///< over touching pairs, overlap / smaller radius

@@ -33,6 +33,22 @@ Json to_rows(const RunRecord& record) {
   return rows;
 }
 
+// Beyond so many ranks the file would be mostly these lists.
+constexpr std::size_t most_listed = 4096;
+
+Json to_numbers(const std::vector<RankNumbers>& all) {
+  Json object = Json::object();
+  for (const RankNumbers& numbers : all) {
+    Json& entry = object[numbers.name];
+    if (!numbers.unit.empty()) entry["unit"] = numbers.unit;
+    entry["sum"] = numbers.sum();
+    entry["max"] = numbers.max();
+    entry["max_over_mean"] = numbers.imbalance();
+    if (numbers.of_rank.size() <= most_listed) entry["of_rank"] = numbers.of_rank;
+  }
+  return object;
+}
+
 }  // namespace
 
 std::string to_json(const RunRecord& record) {
@@ -49,6 +65,9 @@ std::string to_json(const RunRecord& record) {
   root["got"] = to_object(got_fields(record));
   root["audit"] = to_object(audit_fields(record.audit));
   root["layers"] = to_rows(record);
+  root["counters"] = to_numbers(record.counters);
+  root["costs"] = to_numbers(record.costs);
+  root["moving_share"] = moving_share(record);
   root["units"] = std::move(units);
   root["provenance"] = to_object(provenance_fields(record));
   // Text from outside may be no UTF-8; a wrong byte is replaced, not an exception at the end of a long run.

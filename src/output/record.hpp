@@ -36,6 +36,16 @@ struct Audit {
   std::int64_t outside = 0;             ///< centres outside the container
 };
 
+/// A number that every rank has its own of, rank after rank.
+struct RankNumbers {
+  std::string name, unit;  ///< "" for counts
+  std::vector<std::int64_t> of_rank;
+
+  [[nodiscard]] std::int64_t sum() const;
+  [[nodiscard]] std::int64_t max() const;  ///< 0 if there are none
+  [[nodiscard]] double imbalance() const;  ///< max / mean; 1 if all are 0
+};
+
 /// Everything about a run but its particles. Quantities marked (*) are the same on any number of ranks.
 struct RunRecord {
   // asked
@@ -76,6 +86,14 @@ struct RunRecord {
   double wall_seconds = 0.0;
   double particle_steps_per_second = 0.0;
   double bytes_per_particle = 0.0;  ///< worst rank
+  // what it cost, on rank 0; empty on the others
+  std::vector<RankNumbers> counters;  ///< counts: the same in every run on as many ranks
+  std::vector<RankNumbers> costs;     ///< times, memory
 };
+
+/// The numbers of that name, or null.
+[[nodiscard]] const RankNumbers* find(const std::vector<RankNumbers>& all, const std::string& name);
+/// Steps of moving particles over those of all, the frozen included, by the counters; 1 without.
+[[nodiscard]] double moving_share(const RunRecord& record);
 
 }  // namespace packmpi::output

@@ -76,7 +76,7 @@ template <class Row>
     place += sizeof(Row);
   }
   rows = {};  // the memory is needed for what comes
-  const std::vector<comm::Parcel> incoming = comm::exchange(comm, std::move(parcels));
+  const std::vector<comm::Parcel> incoming = comm::exchange(comm, std::move(parcels), comm::Purpose::output);
   std::size_t bytes = 0;
   for (const comm::Parcel& parcel : incoming) bytes += parcel.bytes.size();
   rows.resize(bytes / sizeof(Row));

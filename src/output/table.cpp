@@ -60,12 +60,51 @@ void list_layers(Buffer& out, const RunRecord& r) {
   }
 }
 
+void row(Buffer& out, std::string_view name, std::string_view sum, std::string_view max, std::string_view imbalance) {
+  fmt::format_to(std::back_inserter(out), "  {:<40} {:>22} {:>22} {:>8}\n", name, sum, max, imbalance);
+}
+
+// Times in seconds, memory in megabytes; bytes sent stay exact.
+std::string amount(const RankNumbers& numbers, std::int64_t value, bool exact) {
+  if (numbers.unit == "ns") return fmt::format("{:.3f}", static_cast<double>(value) * 1e-9);
+  if (numbers.unit == "B" && !exact) return fmt::format("{:.1f}", static_cast<double>(value) * 1e-6);
+  return number(value);
+}
+
+void list_numbers(Buffer& out, const std::vector<RankNumbers>& all, bool exact) {
+  for (const RankNumbers& numbers : all) {
+    if (numbers.max() == 0) continue;
+    std::string name = numbers.name;
+    std::ranges::replace(name, '_', ' ');
+    if (numbers.unit == "ns") name += " [s]";
+    if (numbers.unit == "B" && !exact) name += " [MB]";
+    row(out, name, amount(numbers, numbers.sum(), exact), amount(numbers, numbers.max(), exact),
+        fmt::format("{:.3f}", numbers.imbalance()));
+  }
+}
+
+// What it cost: nothing where nothing was counted.
+void list_counters(Buffer& out, const RunRecord& r) {
+  if (r.counters.empty()) return;
+  row(out, fmt::format("counted on {} rank{}", r.ranks, r.ranks == 1 ? "" : "s"), "sum", "max", "max/mean");
+  list_numbers(out, r.counters, true);
+  list_numbers(out, r.costs, false);
+  fmt::format_to(std::back_inserter(out), "  moving share of the particles {:.4f}", moving_share(r));
+  const RankNumbers* memory = find(r.costs, "memory");
+  if (memory != nullptr && r.particles > 0) {
+    fmt::format_to(std::back_inserter(out), "; bytes a particle {:.0f} allocated, {:.0f} resident with libraries",
+                   r.bytes_per_particle, static_cast<double>(memory->sum()) / static_cast<double>(r.particles));
+  }
+  fmt::format_to(std::back_inserter(out), "\n");
+}
+
 }  // namespace
 
 std::string to_table(const RunRecord& record) {
   Buffer out;
   compare(out, record);
   list_layers(out, record);
+  list_counters(out, record);
   return fmt::to_string(out);
 }
 

@@ -96,7 +96,7 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   if (now - last_shown_ < (terminal_ ? terminal_interval : plain_interval)) return;
   last_shown_ = now;
   const double steps =
-      static_cast<double>(pile_.stepper.particle_steps()) * pile_.comm.size();  // about: all ranks alike
+      static_cast<double>(pile_.stepper.work().particle_steps) * pile_.comm.size();  // about: all ranks alike
   const double left = seconds_left(share);
   log::event_for_programs("progress", {{"phase", std::string(thawing_ ? "thaw" : "layer")},
                                        {"layer", std::ssize(pile_.first_ids)},

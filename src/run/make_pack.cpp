@@ -12,6 +12,7 @@
 #include "output/pack.hpp"
 #include "output/report.hpp"
 #include "rsa/insert.hpp"
+#include "run/counters.hpp"
 #include "run/course.hpp"
 #include "run/files.hpp"
 #include "run/journal.hpp"
@@ -34,7 +35,9 @@ void insert_layer(Pile& pile, Keeper& keeper, output::LayerRow& row) {
                                 .first_id = pile.count};
   const LocalIndex before = pile.store.owned();
   const auto look = [&] { keeper.look_while_inserting(before); };
+  const Stopwatch watch;
   const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store, look);
+  pile.inserting += watch.seconds();
   pile.first_ids.push_back(pile.count);
   pile.energy_given += observe::energy_of(pile.comm, pile.store, scene, pile.count, pile.count + got.inserted);
   pile.count += got.inserted;
@@ -118,7 +121,7 @@ void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output:
   record.stop_reason = record.reached ? "height" : "layers.maximum";
 }
 
-void write_outputs(const Pile& pile, const Files& files, const output::RunRecord& record) {
+void write_outputs(const Pile& pile, const Files& files, output::RunRecord& record) {
   const observe::Contacts contacts =
       observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
   std::vector<output::ContactRow> rows;
@@ -133,6 +136,7 @@ void write_outputs(const Pile& pile, const Files& files, const output::RunRecord
                                 .contacts = contacts.of_particle,
                                 .contact_rows = pile.scene.in.output.contacts ? &rows : nullptr};
   output::write_pack(pile.comm, files.pack, parts, record);
+  count(pile, contacts.pairs_here, record);
   output::write_text(pile.comm, files.summary, output::to_json(record));
 }
 

@@ -58,7 +58,7 @@ void Pile::balance() {
   neighborhood.rebuild(store);
 }
 
-std::int64_t Pile::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.particle_steps()); }
+std::int64_t Pile::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.work().particle_steps); }
 
 std::vector<std::int32_t> Pile::layers() const {
   std::vector<std::int32_t> layer;
@@ -69,9 +69,11 @@ std::vector<std::int32_t> Pile::layers() const {
   return layer;
 }
 
+std::size_t Pile::bytes() const noexcept { return store.bytes() + neighborhood.bytes() + stepper.bytes(); }
+
 double Pile::bytes_per_particle() const {
-  const auto bytes = static_cast<double>(store.bytes() + neighborhood.bytes() + stepper.bytes());
-  return comm.max(bytes / static_cast<double>(std::max<LocalIndex>(1, store.owned() + neighborhood.frozen().owned())));
+  return comm.max(static_cast<double>(bytes()) /
+                  static_cast<double>(std::max<LocalIndex>(1, store.owned() + neighborhood.frozen().owned())));
 }
 
 }  // namespace packmpi::run

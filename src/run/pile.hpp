@@ -30,6 +30,7 @@ struct Pile {
   std::int64_t steps = 0;
   std::int64_t thaw_steps = 0;              ///< of them, in final stages
   std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
+  double stepping = 0.0, inserting = 0.0;   ///< [s] wall time of this rank, since the start or restart
 
   [[nodiscard]] double time() const;                  ///< [s] simulated
   [[nodiscard]] dynamics::Moment moment() const;      ///< now, for messages
@@ -51,6 +52,7 @@ struct Pile {
 
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;
+  [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated for the particles and all about them
   /// Bytes a particle, frozen or not, on the rank where they are most. Collective.
   [[nodiscard]] double bytes_per_particle() const;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/log.hpp"
+#include "base/timer.hpp"
 #include "observe/measure.hpp"
 
 namespace packmpi::run {
@@ -126,7 +127,9 @@ Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& 
     if (course.done == plan.creep_from) course.phi_before = phi_of_moving(pile);
     const std::int64_t next = std::min(plan.next(course.done), course.done + keeper.steps_to_look());
     pile.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
+    const Stopwatch watch;
     pile.stepper.advance(pile.store, pile.neighborhood, next - course.done, pile.moment());
+    pile.stepping += watch.seconds();
     pile.steps += next - course.done;
     if (part == Part::thaw) pile.thaw_steps += next - course.done;
     course.done = next;

@@ -35,6 +35,25 @@ TEST(Comm, SumsAndExtremesOfIntegers) {
   comm.sum(std::span(none));
 }
 
+TEST(Comm, ReductionsAreCountedAndNumbersGathered) {
+  const Comm comm(MPI_COMM_WORLD);
+  (void)comm.sum(1);
+  (void)comm.max(1.0);
+  (void)comm.sum_below(1);
+  std::vector<double> values{1.0, 2.0};
+  comm.max(std::span(values));
+  agree(comm, ExitCode::done, {});
+  EXPECT_EQ(comm.counters().reductions, 5);
+  const std::vector<std::int64_t> mine{comm.rank(), 10 * comm.rank()};
+  const std::vector<std::int64_t> all = comm.gather(mine);
+  std::vector<std::int64_t> expected;
+  for (std::int64_t rank = 0; rank < comm.size() && comm.rank() == 0; ++rank) {
+    expected.insert(expected.end(), {rank, 10 * rank});
+  }
+  EXPECT_EQ(all, expected);
+  EXPECT_EQ(comm.counters().reductions, 5);
+}
+
 TEST(Comm, ExtremesOfDoublesAreExact) {
   const Comm comm(MPI_COMM_WORLD);
   const bool last = comm.rank() == comm.size() - 1;

@@ -56,7 +56,7 @@ void check(const Comm& comm, const Pattern& pattern, const std::vector<Parcel>& 
 }
 
 void play(const Comm& comm, const Pattern& pattern, int longest_message = 1 << 30) {
-  check(comm, pattern, exchange(comm, outgoing(comm, pattern), longest_message));
+  check(comm, pattern, exchange(comm, outgoing(comm, pattern), Purpose::other, longest_message));
 }
 
 TEST(Exchange, NobodySends) {
@@ -106,6 +106,31 @@ TEST(Exchange, ParcelsLongerThanAMessage) {  // as those of more than 2 GiB are
   for (std::uint64_t round = 0; round < 50; ++round) {
     play(comm, {round, comm.size(), 80, 40}, 1 + static_cast<int>(round % 9));
   }
+}
+
+TEST(Exchange, CountsWhatLeavesTheRank) {
+  const Comm comm(MPI_COMM_WORLD);
+  const auto sent = [&](Purpose purpose) { return comm.counters().sent[static_cast<std::size_t>(purpose)]; };
+  std::int64_t messages = 0;
+  std::int64_t bytes = 0;
+  for (std::uint64_t round = 0; round < 10; ++round) {
+    std::vector<Parcel> parcels = outgoing(comm, {round, comm.size(), 60, 300});
+    for (const Parcel& parcel : parcels) {
+      if (parcel.rank == comm.rank()) continue;
+      ++messages;
+      bytes += std::ssize(parcel.bytes);
+    }
+    (void)exchange(comm, std::move(parcels), Purpose::migration);
+  }
+  EXPECT_EQ(sent(Purpose::migration).messages, messages);
+  EXPECT_EQ(sent(Purpose::migration).bytes, bytes);
+  EXPECT_EQ(sent(Purpose::other).messages, 0);
+  EXPECT_EQ(comm.counters().exchanges, 10);
+  EXPECT_EQ(comm.counters().reductions, 0);
+  comm.count(Purpose::ghosts, {2, 100});
+  comm.count(Purpose::ghosts, {1, 11});
+  EXPECT_EQ(sent(Purpose::ghosts).messages, 3);
+  EXPECT_EQ(sent(Purpose::ghosts).bytes, 111);
 }
 
 TEST(Exchange, MixesWithOtherCollectivesAndCommunicators) {

@@ -82,6 +82,41 @@ TEST_F(Report, TableFitsAScreenAndIsAligned) {
   EXPECT_EQ(count, 1u + 24u + 1u + 12u);
 }
 
+RunRecord counted_record(std::int64_t big) {
+  RunRecord record = testing::some_record(3, 1);
+  record.counters = {{"owned", "", {10, 20, 30}},
+                     {"ghost_messages", "", {0, 0, 0}},
+                     {"ghost_bytes", "B", {big, 0, 0}},
+                     {"particle_steps", "", {50, 0, 25}},
+                     {"frozen_steps", "", {0, 25, 0}}};
+  record.costs = {{"waiting", "ns", {1500000000, 0, 0}}, {"memory", "B", {2000000, 3000000, 1000000}}};
+  return record;
+}
+
+TEST_F(Report, CountersOfAllRanks) {
+  constexpr std::int64_t big = std::numeric_limits<std::int64_t>::max();
+  const RunRecord record = counted_record(big);
+  const auto json = nlohmann::json::parse(to_json(record));
+  EXPECT_EQ(json["counters"]["owned"]["sum"].get<std::int64_t>(), 60);
+  EXPECT_EQ(json["counters"]["owned"]["max"].get<std::int64_t>(), 30);
+  EXPECT_EQ(json["counters"]["owned"]["max_over_mean"].get<double>(), 1.5);
+  EXPECT_EQ(json["counters"]["owned"]["of_rank"].get<std::vector<std::int64_t>>(),
+            (std::vector<std::int64_t>{10, 20, 30}));
+  EXPECT_EQ(json["counters"]["ghost_messages"]["max_over_mean"].get<double>(), 1.0);
+  EXPECT_EQ(json["counters"]["ghost_bytes"]["unit"].get<std::string>(), "B");
+  EXPECT_EQ(json["costs"]["waiting"]["unit"].get<std::string>(), "ns");
+  EXPECT_EQ(json["moving_share"].get<double>(), 0.75);
+  const std::string table = to_table(record);
+  const std::string counted = table.substr(table.find("counted on 3 ranks"));
+  EXPECT_NE(counted.find("9223372036854775807"), std::string::npos);
+  EXPECT_NE(counted.find("waiting [s]"), std::string::npos);
+  EXPECT_NE(counted.find("1.500"), std::string::npos);
+  EXPECT_NE(counted.find("moving share of the particles 0.7500"), std::string::npos);
+  EXPECT_EQ(counted.find("ghost messages"), std::string::npos);  // of what was none, no row
+  std::istringstream lines(counted);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+}
+
 TEST_F(Report, TableShowsAskedBesideGot) {
   const std::string table = to_table(testing::some_record(3, 1));
   const auto row = table.substr(table.find("height [m]"));

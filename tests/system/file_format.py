@@ -98,12 +98,17 @@ def check_pack(path, table, absent):
         check_units(pack, table)
 
 
-def check_json(path, table):
+def check_json(path, table, page):
     summary = json.loads(path.read_text())
     names = {part: {name.split("@")[1] for name in table if name.startswith(f"/{group}/@")}
              for part, group in (("summary", "summary"), ("audit", "summary/audit"), ("provenance", "provenance"))}
-    expect(set(summary) == {"format", "format_version", "asked", "got", "audit", "layers", "provenance", "units"},
-           f"{path.name}: parts are {sorted(summary)}")
+    expect(set(summary) == {"format", "format_version", "asked", "got", "audit", "layers", "counters", "costs",
+                            "moving_share", "provenance", "units"}, f"{path.name}: parts are {sorted(summary)}")
+    for part in ("counters", "costs"):
+        expect(set(summary[part]) == set(re.findall(rf"`{part}\.(\w+)`", page)),
+               f"{path.name}: {part} are {sorted(summary[part])}")
+        expect(all(len(numbers["of_rank"]) == summary["provenance"]["ranks"] and sum(numbers["of_rank"]) == numbers["sum"]
+                   and max(numbers["of_rank"]) == numbers["max"] for numbers in summary[part].values()), f"{path.name}: {part}")
     expect(set(summary["asked"]) | set(summary["got"]) == names["summary"] - {"units"}, f"{path.name}: asked, got")
     expect(set(summary["audit"]) == names["audit"], f"{path.name}: audit")
     expect(set(summary["provenance"]) == names["provenance"], f"{path.name}: provenance")
@@ -135,7 +140,7 @@ def main():
         if done.returncode != 3:
             sys.exit(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
         check_pack(folder / case / "graded_uniform.hdf", table, absent)
-        check_json(folder / case / "graded_uniform.json", table)
+        check_json(folder / case / "graded_uniform.json", table, page)
         check_steps(folder / case / "graded_uniform.steps.csv", page)
         expect((folder / case / "graded_uniform.log").exists(), "there is no log")
     print("\n".join(problems) or f"{len(table)} names compared")

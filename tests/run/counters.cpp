@@ -1,0 +1,143 @@
+// What the counters count: the same in each run, the same in all where they must not depend on the ranks, and nothing
+// sent where there is nobody to send to. Runs on 4 ranks and makes smaller communicators of them.
+#include "run/counters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+
+#include "run/make_pack.hpp"
+#include "support/scenes.hpp"
+
+namespace packmpi::run {
+namespace {
+
+// Two layers fall on each other; the first is frozen while the second falls, and all move at the end.
+input::Input scene_of(input::Decomposition kind) {
+  input::Input in = test::periodic(test::small_input(3, 0.6, 0.02));
+  in.container.size = {0.44, 0.3, 0.3};
+  in.name = "counters";
+  in.layers.thickness = 0.1;
+  in.layers.fraction = 0.1;  // few rounds of darts
+  in.layers.duration = 0.03;
+  in.layers.maximum = 2;
+  in.layers.velocity = {0.5, 0.3, -2.0};
+  in.particles.youngs_modulus = 1e7;
+  in.jamming.gravity = 10.0;
+  in.dynamics.time_step = 2e-4;
+  in.dynamics.window = 1;
+  in.dynamics.thaw = 0.01;
+  in.output.log_every = 0.01;
+  in.parallel.decomposition = kind;
+  return in;
+}
+
+// Each run is made once, for all tests.
+class Counters : public ::testing::Test {
+ protected:
+  // Collective over the world. The record of rank 0 on the first `ranks`.
+  static output::RunRecord make(int ranks, input::Decomposition kind) {
+    const comm::Comm world(MPI_COMM_WORLD);
+    const comm::Comm part = world.split(world.rank() < ranks ? 0 : 1);
+    output::RunRecord record;
+    if (world.rank() < ranks) {
+      Options options;
+      options.folder = std::filesystem::temp_directory_path() / ("packmpi_counters_" + std::to_string(::getppid()));
+      options.force = true;
+      options.verbosity = log::Verbosity::quiet;
+      record = make_pack(part, scene::build(scene_of(kind)), options);
+      part.barrier();
+      if (part.rank() == 0) std::filesystem::remove_all(options.folder);
+    }
+    world.barrier();
+    return record;
+  }
+  static const output::RunRecord& record_on(int ranks, input::Decomposition kind = input::Decomposition::slab) {
+    static std::map<std::pair<int, input::Decomposition>, output::RunRecord> made;
+    const auto found = made.find({ranks, kind});
+    return found != made.end() ? found->second : made[{ranks, kind}] = make(ranks, kind);
+  }
+};
+
+std::int64_t sum_of(const output::RunRecord& record, const std::string& name) {
+  const output::RankNumbers* found = output::find(record.counters, name);
+  return found != nullptr ? found->sum() : -1;
+}
+
+TEST_F(Counters, DoNotDependOnTheRanksWhereTheyMustNot) {
+  const output::RunRecord& one = record_on(1);
+  for (const auto& [ranks, kind] : {std::pair{2, input::Decomposition::slab}, std::pair{3, input::Decomposition::slab},
+                                    std::pair{4, input::Decomposition::pencil}}) {
+    const output::RunRecord& many = record_on(ranks, kind);
+    if (many.counters.empty()) continue;  // not rank 0
+    SCOPED_TRACE(ranks);
+    for (const char* name : {"owned", "touching_pairs", "particle_steps", "frozen_steps"}) {
+      EXPECT_EQ(sum_of(many, name), sum_of(one, name)) << name;
+    }
+    EXPECT_EQ(sum_of(many, "owned"), many.particles);
+    EXPECT_EQ(sum_of(many, "particle_steps"), many.particle_steps);
+    EXPECT_DOUBLE_EQ(2.0 * static_cast<double>(sum_of(many, "touching_pairs")),
+                     many.coordination * static_cast<double>(many.particles));
+    EXPECT_EQ(output::moving_share(many), output::moving_share(one));
+    EXPECT_LT(output::moving_share(many), 1.0);
+    EXPECT_GT(sum_of(many, "touching_pairs"), 0);
+    for (const char* name : {"ghosts", "ghost_steps", "ghost_messages", "halo_messages", "insertion_messages",
+                             "migration_messages", "frozen_messages"}) {
+      EXPECT_GT(sum_of(many, name), 0) << name;
+    }
+    for (const char* name : {"rebuilds", "reductions", "exchanges"}) {  // collective: all ranks alike
+      const output::RankNumbers* numbers = output::find(many.counters, name);
+      const std::vector<std::int64_t> alike(static_cast<std::size_t>(ranks), numbers != nullptr ? numbers->max() : 0);
+      EXPECT_TRUE(numbers != nullptr && numbers->of_rank == alike) << name;
+    }
+    // A border pair is listed on both sides, another one once.
+    EXPECT_GT(sum_of(many, "pair_steps"), sum_of(one, "pair_steps"));
+    EXPECT_LT(sum_of(many, "pair_steps"), 2 * sum_of(one, "pair_steps"));
+    EXPECT_GE(sum_of(many, "candidates"), sum_of(many, "listed_pairs"));
+  }
+}
+
+TEST_F(Counters, AloneNothingIsSent) {
+  const output::RunRecord& one = record_on(1);
+  if (one.counters.empty()) return;  // not rank 0
+  ASSERT_GT(one.counters.size(), 12U);
+  for (const output::RankNumbers& numbers : one.counters) {
+    const bool sent = numbers.name.ends_with("_messages") || numbers.name.ends_with("_bytes");
+    if (sent || numbers.name.starts_with("ghost")) {
+      EXPECT_EQ(numbers.sum(), 0) << numbers.name;
+    }
+  }
+  EXPECT_GT(sum_of(one, "reductions"), one.steps);  // one a step at least
+}
+
+TEST_F(Counters, AreTheSameInEachRun) {
+  const output::RunRecord& first = record_on(3);
+  const output::RunRecord second = make(3, input::Decomposition::slab);
+  ASSERT_EQ(first.counters.size(), second.counters.size());
+  for (std::size_t k = 0; k < first.counters.size(); ++k) {
+    EXPECT_EQ(first.counters[k].of_rank, second.counters[k].of_rank) << first.counters[k].name;
+  }
+  if (!first.counters.empty()) {
+    ASSERT_FALSE(first.costs.empty());
+    const output::RankNumbers* memory = output::find(first.costs, "memory");
+    ASSERT_NE(memory, nullptr);
+    EXPECT_GT(memory->max(), 1 << 20);  // no MPI program is smaller than a megabyte
+  }
+}
+
+// Two ranks are one neighbour each: one message a step with position, velocity and spin of each ghost, but in the steps
+// that rebuild. Three rebuilds are not of a step: before each layer and the thaw.
+TEST_F(Counters, GhostsAreSentOncePerStepAndNeighbour) {
+  const output::RunRecord& record = record_on(2);
+  if (record.counters.empty()) return;  // not rank 0
+  const std::int64_t rebuilds = output::find(record.counters, "rebuilds")->max();
+  EXPECT_EQ(output::find(record.counters, "ghost_messages")->of_rank,
+            std::vector<std::int64_t>(2, record.steps - (rebuilds - 3)));
+  constexpr std::int64_t bytes = 9 * 8;
+  EXPECT_LT(sum_of(record, "ghost_bytes"), bytes * sum_of(record, "ghost_steps"));
+  EXPECT_EQ(sum_of(record, "ghost_bytes") % bytes, 0);
+}
+
+}  // namespace
+}  // namespace packmpi::run
