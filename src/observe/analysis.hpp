@@ -7,6 +7,7 @@
 
 #include "comm/comm.hpp"
 #include "neighbor/neighborhood.hpp"
+#include "observe/size_match.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
 
@@ -97,7 +98,8 @@ struct LocalDensity {
 /// All of it.
 struct Analysis {
   std::int64_t particles = 0;
-  double mean_diameter = 0.0;    ///< [m] of the scene
+  double mean_diameter = 0.0;  ///< [m] of the scene
+  SizeMatches sizes;
   std::vector<Profile> density;  ///< along x, y(, z)
   Segregation segregation;
   PairDistribution pairs;

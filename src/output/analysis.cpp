@@ -5,6 +5,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "output/size_words.hpp"
+
 namespace packmpi::output {
 namespace {
 
@@ -43,6 +45,7 @@ std::string to_json(const observe::Analysis& a, int dimension) {
   root["format_version"] = 1;
   root["particles"] = a.particles;
   root["mean_diameter"] = a.mean_diameter;
+  root["sizes"] = to_json(a.sizes);
   root["density_profile"] = density(a);
   root["local_density"] = {{"counted", a.local.counted},
                            {"left_out", a.local.left_out},
@@ -64,10 +67,19 @@ std::string to_json(const observe::Analysis& a, int dimension) {
   root["order"] = order(a.order, dimension);
   root["segregation"] = {{"correlation", a.segregation.correlation},
                          {"mean_radius", profile(a.segregation.mean_radius)}};
-  root["units"] = {{"mean_diameter", "m"},     {"density_profile", "m"},
-                   {"mean_normal_force", "N"}, {"stress", dimension == 3 ? "Pa" : "N/m"},
-                   {"floor_force", "N"},       {"weight", "N"},
-                   {"mean_radius", "m"},       {"g", "mean diameters"}};
+  root["units"] = {{"mean_diameter", "m"},
+                   {"density_profile", "m"},
+                   {"mean_normal_force", "N"},
+                   {"stress", dimension == 3 ? "Pa" : "N/m"},
+                   {"floor_force", "N"},
+                   {"weight", "N"},
+                   {"mean_radius", "m"},
+                   {"g", "mean diameters"},
+                   {"d10", "m"},
+                   {"d30", "m"},
+                   {"d50", "m"},
+                   {"d60", "m"},
+                   {"d90", "m"}};
   return root.dump(2) + "\n";
 }
 
@@ -101,6 +113,10 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     line("hcp, share", a.order.hcp);
   }
   line("correlation of radius and height", a.segregation.correlation);
+  fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", "sizes", "asked", "got");
+  for (const SizeLine& size : size_lines(a.sizes)) {
+    fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", size.quantity, size.asked, size.got);
+  }
   return fmt::to_string(out);
 }
 
