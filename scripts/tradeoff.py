@@ -10,6 +10,7 @@ is about three quarters of an hour of one core. Packs of a scene hold the same s
 """
 import argparse
 import csv
+import fcntl
 import json
 import math
 import os
@@ -27,6 +28,7 @@ import tradeoff_report
 OFF = {"dynamics.rotation": "false"}
 BRICK = {"container.size": "[0.6,0.6,0.5]", "layers.maximum": "12"}
 TALL = {"container.size": "[0.6,0.6,1.0]", "layers.maximum": "24"}
+SMALL = {"container.size": "[0.4,0.4,0.33]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "8"}
 TWELVE = {"layers.maximum": "12"}
 PERIODIC = {"container.boundary": '["periodic","periodic"]'}
 # Coarse rock, nothing of it as in the paper's examples: size, shape of the grading, density, modulus, friction, damping, gravity.
@@ -38,20 +40,22 @@ ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","perio
 # name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
 # `fidelity` alone says how a pack is made.
 SCENES = {
-    "brick_on": ("paper_5_3", BRICK, 6, "3D, equal, 12 layers, rotation on"),
-    "brick_off": ("paper_5_3", {**BRICK, **OFF}, 6, "the same, rotation off"),
-    "tall_on": ("paper_5_3", TALL, 4, "3D, equal, 24 layers, rotation on"),
-    "tall_off": ("paper_5_3", {**TALL, **OFF}, 4, "the same, rotation off"),
-    "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 4, "3D, Gaussian, periodic, 12 layers, rotation on"),
-    "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 4, "the same, rotation off"),
+    "small_on": ("paper_5_3", SMALL, 8, "3D, equal, periodic, 8 layers, rotation on"),
+    "brick_on": ("paper_5_3", BRICK, 4, "3D, equal, 12 layers, rotation on"),
+    "brick_off": ("paper_5_3", {**BRICK, **OFF}, 4, "the same, rotation off"),
+    "tall_on": ("paper_5_3", TALL, 2, "3D, equal, 24 layers, rotation on"),
+    "tall_off": ("paper_5_3", {**TALL, **OFF}, 2, "the same, rotation off"),
+    "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 3, "3D, Gaussian, periodic, 12 layers, rotation on"),
+    "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 3, "the same, rotation off"),
     "2d_on": ("paper_5_1", TWELVE, 10, "2D, equal (example 5.1), 12 layers, rotation on"),
     "2d_off": ("paper_5_1", {**TWELVE, **OFF}, 10, "the same, rotation off"),
     "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
     "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
-    "rock": ("paper_5_3", ROCK, 4, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; not used to choose the presets"),
+    "rock": ("paper_5_3", ROCK, 3, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; not used to choose the presets"),
 }
 PAPER = {"fidelity": "paper"}
 REFERENCE = "paper"
+SAME_MASS = {"tall_off": {"layers.maximum": "23"}}   # the reference reaches H_d with these, a shorter protocol may not
 
 
 def down(speed):
@@ -62,10 +66,10 @@ def viscous(slip_time):
     return {"contact.regularisation": "viscous", "contact.slip_time": slip_time}
 
 
-# knob: {setting: options}; all but the presets on brick_on unless --scenes says otherwise.
+# knob: {setting: options}; all but the presets on small_on unless --scenes says otherwise.
 KNOBS = {
     "presets": {"balanced": {"fidelity": "balanced"}, "draft": {"fidelity": "draft"}},
-    "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.5e-4", "3e-4")},
+    "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.4e-4", "3e-4")},
     "convergence": {f"slip time 2e-4, dt {dt}": {**viscous("2e-4"), "dynamics.time_step": dt}
                     for dt in ("0.25e-4", "0.5e-4", "1e-4")},
     "duration": {f"{t} s a layer": {"layers.duration": t} for t in ("0.25", "0.5", "2.0")},
@@ -73,19 +77,19 @@ KNOBS = {
                 "settled, limits 3 times wider": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-3", "dynamics.settled_drift": "1.5e-2"},
                 "settled, limits 3 times tighter": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-4",
                                                     "dynamics.settled_drift": "1.5e-3"}},
-    "layers": {"layers half as thick": {"layers.thickness": "0.05", "layers.maximum": "24"},
-               "layers twice as thick": {"layers.thickness": "0.2", "layers.maximum": "6"},
-               "phi_0 0.15": {"layers.fraction": "0.15", "layers.maximum": "20"},
-               "phi_0 0.30": {"layers.fraction": "0.30", "layers.maximum": "10"}},
+    "layers": {"layers half as thick": {"layers.thickness": "0.05", "layers.maximum": "16"},
+               "layers twice as thick": {"layers.thickness": "0.2", "layers.maximum": "4"},
+               "phi_0 0.125": {"layers.fraction": "0.125", "layers.maximum": "16"},
+               "phi_0 0.20": {"layers.fraction": "0.20", "layers.maximum": "10"}},
     "stiffness": {"E 1e7 throughout": {"particles.youngs_modulus": "1e7"},
                   **{f"E {e} in layers, hardened in 0.9 s": {"layers.youngs_modulus": e, "dynamics.thaw": "0.9"} for e in ("3e7", "1e7", "3e6")}},
     "friction": {"friction viscous, slip time 2e-4": viscous("2e-4"), "friction viscous, slip time 1e-3": viscous("1e-3"),
                  "friction without a cap": {"contact.regularisation": "none"}},
-    "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5", "8")},
-    "thaw": {f"window 5, thaw {t} s": {"dynamics.window": "5", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
+    "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5")},
+    "thaw": {f"window 3, thaw {t} s": {"dynamics.window": "3", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
     "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},
 }
-SEEDS_OF_KNOBS = 3
+SEEDS_OF_KNOBS = 4
 FILES_OWN = ("layers.duration", "dynamics.time_step", "fidelity")   # what a setting says instead of the scene's file
 
 
@@ -107,8 +111,10 @@ def planned(options):
             continue
         wanted = options.seeds or seeds
         for seed in range(1, wanted + 1):
-            for setting, values in {REFERENCE: {}, **(KNOBS["presets"] if "presets" in options.knobs else {})}.items():
-                runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
+            for setting, values in {**({} if options.no_references else {REFERENCE: {}}),
+                                    **(KNOBS["presets"] if "presets" in options.knobs else {})}.items():
+                same = {} if setting == REFERENCE else SAME_MASS.get(scene, {})
+                runs.append((scene, setting, {**changes, **PAPER, **values, **same}, seed))
         if scene not in options.knob_scenes:
             continue
         for knob in options.knobs:
@@ -155,7 +161,7 @@ def make(options, scene, setting, values, seed):
     row = {"commit": options.commit, "scene": scene, "setting": setting, "seed": seed, "exit": done.returncode,
            "cpu_seconds": f"{cpu:.2f}", "options": " ".join(words[1::2])}
     if done.returncode not in (0, 3):
-        row["words"] = done.stderr.strip().splitlines()[-1].replace(str(options.results) + "/", "")[:300]
+        row["words"] = done.stderr.strip().splitlines()[-1].split(".toml: ")[-1][:300]
         return row
     got = json.loads((folder / f"{file}.json").read_text())
     layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
@@ -177,6 +183,14 @@ def read_rows(path):
         return []
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def add_row(options, row):
+    """Puts the row into the file, which another run of this script may be filling, too."""
+    path = options.data
+    with open(options.results / "lock", "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        write_rows(path, [other for other in read_rows(path) if identity(other) != identity(row)] + [row])
 
 
 def write_rows(path, rows):
@@ -209,8 +223,7 @@ def measure(options):
     start = time.monotonic()
     for k, (scene, setting, values, seed) in enumerate(todo):
         row = make(options, scene, setting, values, seed)
-        rows[identity(row)] = row
-        write_rows(options.data, rows.values())
+        add_row(options, row)
         left = (time.monotonic() - start) / (k + 1) * (len(todo) - k - 1)
         print(f"{k + 1}/{len(todo)}, {left / 60.0:.0f} min left: {scene}, {setting}, seed {seed}: {row['cpu_seconds']} s, "
               f"{'phi_bulk ' + str(row['phi_bulk']) if 'phi_bulk' in row else row.get('words', '')}", flush=True)
@@ -221,7 +234,8 @@ def parse():
     parser.add_argument("--seeds", type=int, help="seeds 1 .. N in every scene")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--knobs", nargs="+", choices=KNOBS, default=list(KNOBS))
-    parser.add_argument("--knob-scenes", nargs="+", choices=SCENES, default=["brick_on"], help="where single knobs are turned")
+    parser.add_argument("--knob-scenes", nargs="+", choices=SCENES, default=["small_on"], help="where single knobs are turned")
+    parser.add_argument("--no-references", action="store_true", help="leave the references to another run")
     parser.add_argument("--report-only", action="store_true", help="report on the runs there are")
     parser.add_argument("--fresh", action="store_true", help="make every run again")
     parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")

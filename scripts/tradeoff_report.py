@@ -66,18 +66,25 @@ def is_2d(scene):
     return scene.startswith("2d")
 
 
+def is_graded(scene):
+    return "graded" in scene or scene == "rock"   # their numbers differ from seed to seed
+
+
 def misses(scene, setting, references, rows, noise):
     """Which bounds of the preset are missed, in words; empty: none."""
     phi = abs(mean(rows, "phi_bulk") - mean(references, "phi_bulk"))
     fewer = ratio(references, rows, "particle_steps")
     if setting == "draft":
-        checks = {"phi_bulk": phi <= DRAFT["phi"], "cost": fewer >= DRAFT["fewer"] or is_2d(scene)}
+        limit = max(DRAFT["phi"], 2.0 * noise.of_difference("phi_bulk", rows, references) if is_2d(scene) else 0.0)
+        checks = {"phi_bulk": phi <= limit, "cost": fewer >= DRAFT["fewer"] or is_2d(scene)}
     else:
         limit = max(BALANCED["phi_2d"], 2.0 * noise.of_difference("phi_bulk", rows, references)) if is_2d(scene) else BALANCED["phi_3d"]
+        touching = max(BALANCED["coordination"], 2.0 * noise.of_difference("coordination", rows, references) if is_2d(scene) else 0.0)
         checks = {"phi_bulk": phi <= limit,
-                  "coordination": abs(mean(rows, "coordination") - mean(references, "coordination")) <= BALANCED["coordination"],
+                  "coordination": abs(mean(rows, "coordination") - mean(references, "coordination")) <= touching,
                   "overlap": abs(1.0 - 1.0 / ratio(references, rows, "mean_overlap")) <= BALANCED["overlap"],
                   "cost": fewer >= BALANCED["fewer"] or is_2d(scene)}
+    checks["not the same mass"] = {row["particles"] for row in rows} == {row["particles"] for row in references} or is_graded(scene)
     return ", ".join(name for name, held in checks.items() if not held)
 
 
@@ -146,14 +153,14 @@ def single_knobs(rows, knobs, reference):
                     lines.append(f"| {knob} | {setting} | {len(mine)} | {measures(references, mine, noise)} |")
                 failed = [row for row in rows if row["scene"] == scene and row["setting"] == setting and not row["particles"]]
                 if failed:
-                    lines.append(f"| {knob} | {setting} | {len(failed)} | exit code {failed[0]['exit']}: {failed[0]['words']} | | | | |")
+                    lines.append(f"| {knob} | {setting} | {len(failed)} | exit code {failed[0]['exit']}: {failed[0]['words'].split('.toml: ')[-1]} | | | | |")
         if lines:
             out += [f"Scene `{scene}`:", "", "| knob | setting | seeds | phi_bulk | coordination | overlap, ratio | fewer particle-steps | faster |",
                     "|---|---|---|---|---|---|---|---|", *lines, ""]
     return out
 
 
-def convergence(rows, scene="brick_on"):
+def convergence(rows, scene="small_on"):
     """phi_bulk against the step, for each way to regularise friction."""
     families = {"\"stop\": the slip may end within one step": {"0.25e-4": "dt 0.25e-4", "0.5e-4": "dt 0.5e-4", "1e-4": "paper", "2e-4": "dt 2e-4"},
                 "\"viscous\", slip time 2e-4 s": {dt: f"slip time 2e-4, dt {dt}" for dt in ("0.25e-4", "0.5e-4", "1e-4")}}
@@ -176,7 +183,7 @@ def plot(path, rows, knobs, scenes, reference):
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True)
-    scene = "brick_on"
+    scene = "small_on"
     references, noise = made(rows, scene, reference), Noise(rows, scene)
     for k, (knob, settings) in enumerate(knobs.items()):
         points = [(ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
@@ -184,23 +191,26 @@ def plot(path, rows, knobs, scenes, reference):
                   for setting in settings if knob != "convergence" and (mine := made(rows, scene, setting)) and references]
         if points:
             x, y, e = zip(*points)
-            left.errorbar(x, y, e, fmt="os^vD<>ph*X"[k % 11], capsize=2, label=knob, markersize=10 if knob == "presets" else 6)
-    left.set_title("single knobs and presets, 3D, 12 layers, rotation on")
+            left.errorbar(x, y, e, fmt="os^vD<>ph*XPd"[k % 13], capsize=2, label=knob, markersize=10 if knob == "presets" else 6)
+    left.set_title("single knobs and presets, 3D, 8 layers, rotation on")
     for k, name in enumerate(scenes):
         references, noise = made(rows, name, reference), Noise(rows, name)
         for preset, colour in (("balanced", "tab:blue"), ("draft", "tab:red")):
             mine = made(rows, name, preset)
             if references and mine:
                 right.errorbar(ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
-                               noise.of_difference("phi_bulk", mine, references), fmt="os^vD<>ph*X"[k % 11], color=colour, capsize=2,
+                               noise.of_difference("phi_bulk", mine, references), fmt="os^vD<>ph*XPd"[k % 13], color=colour, capsize=2,
                                label=name if preset == "balanced" else None)
     right.set_title("presets (blue balanced, red draft), all scenes")
     for axes in (left, right):
         axes.axhspan(-BALANCED["phi_3d"], BALANCED["phi_3d"], color="0.88", zorder=0)
         axes.axhline(0.0, color="0.5", linewidth=0.8)
         axes.set_xscale("log")
+        axes.set_xticks([0.25, 0.5, 1, 2, 4, 8, 16, 32] if axes is left else [2, 4, 8, 16, 32], minor=False)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("")
         axes.set_xlabel("times fewer particle-steps than \"paper\"")
-        axes.legend(fontsize=7)
+        axes.legend(fontsize=7, loc="lower left" if axes is left else "lower right", ncols=1 if axes is left else 2)
     left.set_ylabel("phi_bulk - that of \"paper\"")
     figure.tight_layout()
     figure.savefig(path, dpi=110)

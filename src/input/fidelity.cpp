@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "input/keys.hpp"
@@ -15,15 +16,45 @@ namespace {
 struct Protocol {
   double duration;  ///< of a layer
   double speed;     ///< at insertion, downward
-  double softness;  ///< modulus while layers settle, over that of the particles; 1: no other one
   int window;
-  double thaw;
+  double thaw;  ///< for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
 };
 
-/// Measured and chosen by scripts/tradeoff.py (doc/accuracy.md).
-Protocol protocol_of(const Input& in) {
-  if (in.fidelity == "balanced") return {1.1, 0.5, 1.0, 0, 1.9};
-  return {1.0, 0.5, 0.1, 5, 1.9};
+/// How soft layers may settle.
+struct Softness {
+  double share;   ///< of the particles' modulus
+  double weight;  ///< modulus over rho g H_d, the stress of a solid pile on its floor: less, and it bursts in the thaw
+};
+
+bool is_draft(const Input& in) { return in.fidelity == "draft"; }
+bool graded(const Input& in) { return in.particles.radius.distribution != SizeDistribution::equal; }
+
+bool flat(const Input& in) { return in.container.dimension == 2; }
+
+/// Modulus while layers settle [Pa]; that of the particles if it would gain little to soften them. Soft layers without
+/// spin settle too densely for "balanced".
+double soft_modulus(const Input& in) {
+  constexpr double worth_it = 0.5;
+  const double hard = in.particles.youngs_modulus;
+  if (!is_draft(in) && !in.dynamics.rotation) return hard;
+  const Softness softness = is_draft(in) && graded(in) && !flat(in) ? Softness{0.03, 1.5e3} : Softness{0.1, 5e3};
+  const double stress = in.particles.density * in.jamming.gravity * in.container.size.back();
+  const double soft = std::max(softness.share * hard, softness.weight * stress);
+  return soft < worth_it * hard ? soft : hard;
+}
+
+/// Both measured and chosen with scripts/tradeoff.py (doc/accuracy.md).
+Protocol draft(const Input& in) {
+  if (flat(in)) return {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4};
+  if (graded(in)) return {.duration = 0.65, .speed = 0.75, .window = 4, .thaw = 0.2};
+  return {.duration = 0.8, .speed = 0.75, .window = 4, .thaw = 0.26};
+}
+
+Protocol balanced(const Input& in, bool soft) {
+  if (!in.dynamics.rotation) return {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58};
+  if (!soft) return {.duration = 1.1, .speed = 0.5, .window = 0, .thaw = 0.4};
+  if (flat(in)) return {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9};
+  return {.duration = 1.0, .speed = 0.5, .window = 5, .thaw = 0.6};
 }
 
 /// Three digits, the same on any machine.
@@ -41,16 +72,18 @@ std::vector<PresetValue> preset(const Input& in) {
     return {{"layers.duration", "1.0"}, {"dynamics.time_step", "1e-4"}, {"dynamics.window", "0"}};
   }
   const double h = in.layers.thickness, g = in.jamming.gravity;
-  const Protocol protocol = protocol_of(in);
+  const double modulus = soft_modulus(in);
+  const bool soft = modulus < in.particles.youngs_modulus;
+  const Protocol protocol = is_draft(in) ? draft(in) : balanced(in, soft);
   const double fall = std::sqrt(2.0 * h / g);
+  const double layers = in.container.size.back() / h;
+  const double least_thaw = is_draft(in) ? 1.0 : 2.4;  // particles harden in half of it
   std::vector<PresetValue> values{{"layers.duration", rounded(protocol.duration * fall)},
                                   {"layers.velocity", downward(in, protocol.speed * g * fall)},
                                   {"dynamics.time_step", "auto"},
                                   {"dynamics.window", std::to_string(protocol.window)},
-                                  {"dynamics.thaw", rounded(protocol.thaw * fall)}};
-  if (protocol.softness < 1.0) {
-    values.push_back({"layers.youngs_modulus", rounded(protocol.softness * in.particles.youngs_modulus)});
-  }
+                                  {"dynamics.thaw", rounded(std::max(least_thaw, protocol.thaw * layers) * fall)}};
+  if (soft) values.push_back({"layers.youngs_modulus", rounded(modulus)});
   return values;
 }
 

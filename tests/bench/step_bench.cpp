@@ -188,8 +188,14 @@ void run(int count, int runs) {
   cases.back().features.periodic = true;
   cases.push_back({"3D equal no rotation", full});
   cases.back().features.rotation = false;
+  cases.push_back({"3D equal rotation no friction", full});
+  cases.back().features.friction = false;
+  cases.push_back({"3D equal rotation no drag", full});
+  cases.back().features.drag = false;
+  cases.push_back({"3D equal nothing else", {.dimension = 3, .rotation = false, .friction = false, .drag = false}});
   cases.push_back({"2D equal rotation", full});
   cases.back().features.dimension = 2;
+  cases.push_back({"2D equal nothing else", {.dimension = 2, .rotation = false, .friction = false, .drag = false}});
   fmt::print("{}, {} runs each\n", dynamics::kernel_architecture(), runs);
   for (const Case& c : cases) {
     Bed bed(c.features, count);
@@ -197,9 +203,12 @@ void run(int count, int runs) {
     const double median = r[r.size() / 2];
     const double n = bed.store.owned();
     fmt::print(
-        "{:28s} N {:8d}  pairs/N {:.2f} touching/N {:.2f} window {:6d}  {:5.1f}e6/s (best {:5.1f})  {:5.1f} ns\n",
+        "{:30s} N {:8d}  pairs/N {:.2f} touching/N {:.2f} window {:6d}  {:5.1f}e6/s (best {:5.1f})  {:5.1f} ns, {} "
+        "bytes "
+        "a record\n",
         c.name, bed.store.owned(), static_cast<double>(bed.pairs.first.size()) / n,
-        static_cast<double>(bed.touching) / n, bed.pairs.window, median * 1e-6, r.back() * 1e-6, 1e9 / median);
+        static_cast<double>(bed.touching) / n, bed.pairs.window, median * 1e-6, r.back() * 1e-6, 1e9 / median,
+        bed.store.layout().record_bytes());
   }
 }
 

@@ -241,8 +241,30 @@ TEST(Fidelity, TimesGoWithTheFreeFallThroughALayer) {
   const Input heavy = with({"fidelity=draft", "jamming.gravity=8.0"});  // four times as much
   const Input thick = with({"fidelity=draft", "layers.thickness=0.4"});
   EXPECT_NEAR(heavy.layers.duration, 0.5 * in.layers.duration, 0.01 * in.layers.duration);
-  EXPECT_NEAR(*thick.dynamics.thaw, 2.0 * *in.dynamics.thaw, 0.01 * *in.dynamics.thaw);
+  EXPECT_NEAR(thick.layers.duration, 2.0 * in.layers.duration, 0.01 * in.layers.duration);
+  EXPECT_NEAR(*heavy.dynamics.thaw, 0.5 * *in.dynamics.thaw, 0.01 * *in.dynamics.thaw);
+  EXPECT_LT(*thick.dynamics.thaw, 2.0 * *in.dynamics.thaw) << "the pile is less deep in layers";
   EXPECT_NEAR(heavy.layers.velocity[2], 2.0 * in.layers.velocity[2], 0.01 * -in.layers.velocity[2]);
+}
+
+TEST(Fidelity, LayersAreAsSoftAsThePileBears) {
+  const auto modulus = [](const char* name, const char* particles, const char* radius) {
+    const Input in = with({name, particles, radius});
+    return in.layers.youngs_modulus.value_or(in.particles.youngs_modulus);
+  };
+  const char* equal = "particles.radius={ distribution = \"equal\", value = 0.02 }";
+  const char* graded =
+      "particles.radius={ distribution = \"uniform\", min = 0.01, max = 0.02, weighting = \"number\" }";
+  // rho g H_d is 1000 Pa here; 5e3 and 1.5e3 of it are the least
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=1e8", equal), 1e7);
+  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=1e8", equal), 1e7);
+  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=1e8", graded), 3e6);
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=2e7", graded), 5e6);
+  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=2e7", graded), 1.5e6);
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=8e6", equal), 8e6) << "it would gain little";
+  EXPECT_FALSE(with({"fidelity=balanced", "dynamics.rotation=false"}).layers.youngs_modulus.has_value());
+  EXPECT_EQ(with({"fidelity=balanced", "particles.youngs_modulus=8e6"}).dynamics.window, 0)
+      << "and a window without soft layers is too loose";
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {
