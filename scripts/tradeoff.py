@@ -41,8 +41,8 @@ ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","perio
 # `fidelity` alone says how a pack is made.
 SCENES = {
     "small_on": ("paper_5_3", SMALL, 8, "3D, equal, periodic, 8 layers, rotation on"),
-    "brick_on": ("paper_5_3", BRICK, 4, "3D, equal, 12 layers, rotation on"),
-    "brick_off": ("paper_5_3", {**BRICK, **OFF}, 4, "the same, rotation off"),
+    "brick_on": ("paper_5_3", BRICK, 8, "3D, equal, 12 layers, rotation on"),
+    "brick_off": ("paper_5_3", {**BRICK, **OFF}, 8, "the same, rotation off"),
     "tall_on": ("paper_5_3", TALL, 3, "3D, equal, 24 layers, rotation on"),
     "tall_off": ("paper_5_3", {**TALL, **OFF}, 3, "the same, rotation off"),
     "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 3, "3D, Gaussian, periodic, 12 layers, rotation on"),
