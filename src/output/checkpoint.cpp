@@ -79,13 +79,25 @@ void write_bytes(hid_t file, const std::string& path, const std::string& text) {
   h5::write_small(file, path, "", std::vector<std::uint8_t>(text.begin(), text.end()));
 }
 
+// All of the file but the rows of `plan`.
+void write_frame(hid_t file, const std::vector<h5::Column>& plan, const RunState& state, std::uint64_t digest) {
+  const std::string text = to_text(state);
+  h5::set_fixed_attribute(file, "format", "packmpi-checkpoint");
+  h5::set_attribute(file, "format_version", checkpoint_version);
+  h5::set_attribute(file, "particle_digest", digest);
+  h5::set_attribute(file, "text_digest", hash_of(text + state.effective_input));
+  (void)h5::create_group(file, "/particles");
+  write_bytes(file, "/state", text);
+  write_bytes(file, "/effective_input", state.effective_input);
+  for (const h5::Column& column : plan) h5::create_dataset(file, column);
+}
+
 }  // namespace
 
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
                       const RunState& state) {
   const h5::Quiet quiet;
   const std::uint64_t digest = digest_of(comm, stores);
-  const std::string text = to_text(state);
   const IdBlocks blocks{state.count, comm.size()};
   std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
   const GlobalId begin = blocks.begin(comm.rank());
@@ -98,17 +110,14 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
     }
   });
   const std::vector<h5::Column> plan = plan_columns(slab, rows, stores.front()->layout());
-  const auto frame = [&](hid_t file) {
-    h5::set_fixed_attribute(file, "format", "packmpi-checkpoint");
-    h5::set_attribute(file, "format_version", checkpoint_version);
-    h5::set_attribute(file, "particle_digest", digest);
-    h5::set_attribute(file, "text_digest", hash_of(text + state.effective_input));
-    (void)h5::create_group(file, "/particles");
-    write_bytes(file, "/state", text);
-    write_bytes(file, "/effective_input", state.effective_input);
-    for (const h5::Column& column : plan) h5::create_dataset(file, column);
-  };
-  write_whole_file(comm, path, plan, frame);
+  write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, plan, state, digest); });
+}
+
+std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state) {
+  const h5::Slab slab{static_cast<hsize_t>(state.count), 0, 0};
+  const std::vector<RecordRow> none;
+  const std::vector<h5::Column> plan = plan_columns(slab, none, layout);
+  return whole_file_bytes([&](hid_t file) { write_frame(file, plan, state, 0); });
 }
 
 }  // namespace packmpi::output

@@ -56,6 +56,10 @@ struct RunState {
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
                       const RunState& state);
 
+/// Bytes of the file that write_checkpoint() would write of state.count particles. Rank-local. Throws
+/// Error(io_failure).
+[[nodiscard]] std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state);
+
 /// The state in the checkpoint PATH, its digest verified; the particles are not looked at. Rank-local.
 /// Throws Error(bad_checkpoint): "PATH: what is wrong".
 [[nodiscard]] RunState read_state(const std::string& path);

@@ -97,6 +97,12 @@ MemoryFile::~MemoryFile() { ::close(fd_); }
 
 bool MemoryFile::stand_in_for(int fd) const noexcept { return dup3(fd_, fd, O_CLOEXEC) >= 0; }
 
+std::int64_t MemoryFile::size() const {
+  const off_t size = lseek(fd_, 0, SEEK_END);
+  if (size < 0) fail("a file in memory", "seek", errno);
+  return size;
+}
+
 void MemoryFile::copy_to(Descriptor& disk) const {
   const off_t size = lseek(fd_, 0, SEEK_END);
   reserve_open(disk, disk.path(), size);

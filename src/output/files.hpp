@@ -45,6 +45,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
   /// The open file `fd` of this process is this one from now on. False: it cannot be.
   [[nodiscard]] bool stand_in_for(int fd) const noexcept;
+  [[nodiscard]] std::int64_t size() const;  ///< [bytes], holes included; throws Error(io_failure)
   /// Makes `disk` as long as this file, its space on the disk, and writes to it what was written here.
   void copy_to(Descriptor& disk) const;
 

@@ -1,6 +1,7 @@
 /// The pack file: what is in it, writing and reading (design: doc/file_format.md).
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,11 @@ struct PackParts {
 /// Error(numerical_failure) if the ids are not 0 .. N-1; then PATH is untouched and PATH.tmp is gone.
 /// Memory: about 200 bytes a particle of this rank's share, for the time of the call.
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts, const RunRecord& record);
+
+/// Bytes of the file that write_pack() would write of so many particles and contacts (none: no /contacts). Rank-local.
+/// Throws Error(io_failure).
+[[nodiscard]] std::int64_t pack_bytes(const RunRecord& record, bool rotation, std::int64_t particles,
+                                      std::optional<std::int64_t> contacts);
 
 /// Rows of a pack, sorted by id.
 struct PackRows {

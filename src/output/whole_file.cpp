@@ -2,8 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "output/files.hpp"
 
@@ -90,6 +94,27 @@ void write_whole_file(const comm::Comm& comm, const std::string& path, const std
     if (comm.rank() == 0) discard(temporary);
     throw;
   }
+}
+
+std::int64_t whole_file_bytes(const std::function<void(hid_t)>& frame) {
+  const h5::Quiet quiet;
+  std::error_code ignored;
+  std::string name = (std::filesystem::temp_directory_path(ignored) / "packmpi-XXXXXX").string();
+  const int taken = mkstemp(name.data());  // HDF5 wants a file that nobody else has locked
+  if (taken < 0) fail(name, "take a name", errno);
+  ::close(taken);
+  const MemoryFile memory(name);
+  h5::Handle file;
+  try {
+    file = h5::create_file(name, memory);
+  } catch (...) {
+    discard(name);
+    throw;
+  }
+  discard(name);
+  frame(file.get());
+  file.close("close the file");
+  return memory.size();
 }
 
 }  // namespace packmpi::output

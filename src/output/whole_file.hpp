@@ -20,4 +20,8 @@ namespace packmpi::output {
 void write_whole_file(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
                       const std::function<void(hid_t file)>& frame);
 
+/// Bytes of the file that write_whole_file() would write, rows included: `frame` makes it in memory, where they are a
+/// hole; a name in the folder for temporary files is taken for a moment. Rank-local. Throws Error(io_failure).
+[[nodiscard]] std::int64_t whole_file_bytes(const std::function<void(hid_t file)>& frame);
+
 }  // namespace packmpi::output

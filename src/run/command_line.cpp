@@ -5,10 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <sstream>
 #include <string_view>
 
 #include "base/error.hpp"
+#include "input/units.hpp"
 #include "output/scene_schema.hpp"
 #include "packmpi/version.hpp"
 #include "run/command_docs.hpp"
@@ -132,6 +135,61 @@ void declare_convert(CLI::App& app, Options& options) {
   app.footer("Formats:\n" + lines(format_words()));
 }
 
+constexpr std::int64_t most_particles = std::int64_t{1} << 40;  // as scenes may have
+constexpr int most_ranks = 1 << 24;
+
+// A length above 0 [m]: "0.2", or "20 cm".
+std::optional<double> read_length(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool plain = error == std::errc() && end == text.data() + text.size();
+  const std::optional<double> length = plain ? value : input::parse_scalar(text, input::length).value;
+  return length && *length > 0.0 && std::isfinite(*length) ? length : std::nullopt;
+}
+
+// "L,B" or "L", each a length or "open".
+void read_sides(const std::string& text, std::vector<std::optional<double>>& sides) {
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    const bool open = word == "open";
+    sides.push_back(open ? std::nullopt : read_length(word));
+    if (!open && !sides.back()) {
+      throw CLI::ValidationError("--floor", fmt::format("\"{}\" is neither a length above 0 nor \"open\"", word));
+    }
+  }
+}
+
+void declare_estimate(CLI::App& app, Options& options) {
+  declare_scene(app, options);
+  Question& question = options.question;
+  app.add_option("--particles", question.particles, "of the pack; then its height is found, or its floor")
+      ->check(CLI::Range(std::int64_t{1}, most_particles))
+      ->type_name("N");
+  app.add_option_function<std::string>(
+         "--height",
+         [&question](const std::string& text) {
+           question.height = read_length(text);
+           if (!question.height) {
+             throw CLI::ValidationError("--height", fmt::format("\"{}\" is no length above 0", text));
+           }
+         },
+         "to be filled, instead of the scene's [m]; with --particles, the floor is found, of the scene's shape")
+      ->type_name("H");
+  app.add_option_function<std::string>(
+         "--floor", [&question](const std::string& text) { read_sides(text, question.sides); },
+         "sides of the floor, instead of the scene's [m]; one that is the word open is found")
+      ->type_name("L,B");
+  app.add_option("--fraction", question.fraction, "solid fraction of the pile, instead of the estimate")
+      ->check(CLI::Range(0.01, 0.99))
+      ->type_name("F");
+  app.add_option("--ranks", question.ranks, "that the run is to have; without it, those that are here")
+      ->check(CLI::Range(1, most_ranks))
+      ->type_name("N");
+  app.add_flag_callback(
+      "--no-probe", [&question] { question.probe = false; }, "do not try how fast this machine is: no time is told");
+  app.add_flag("--json", question.json, "print JSON");
+}
+
 void declare_nothing(CLI::App&, Options&) {}
 
 void declare_completion(CLI::App& app, Options& options) {
@@ -150,6 +208,9 @@ constexpr std::array declarations{
     Declaration{Command::run, "run", "make the pack: NAME.hdf, NAME.json, NAME.log, NAME.steps.csv", declare_run},
     Declaration{Command::check, "check", "read and check the scene, print every key as it will be used, do nothing",
                 declare_scene},
+    Declaration{Command::estimate, "estimate",
+                "tell what the scene will take: particles, height or floor, layers, steps, memory, files, time",
+                declare_estimate},
     Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
     Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
     Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},

@@ -12,7 +12,18 @@
 
 namespace packmpi::run {
 
-enum class Command { run, check, info, analyze, convert, init, schema, manual, completion };
+enum class Command { run, check, estimate, info, analyze, convert, init, schema, manual, completion };
+
+/// What `estimate` is asked; nothing: what the scene as it is comes to.
+struct Question {
+  std::optional<std::int64_t> particles{};
+  std::optional<double> height{};              ///< [m] H_d
+  std::vector<std::optional<double>> sides{};  ///< [m] of the floor, none: open; empty: those of the scene
+  std::optional<double> fraction{};            ///< [-] of the pile, instead of the estimate
+  int ranks = 0;                               ///< 0: those that are here
+  bool probe = true;
+  bool json = false;
+};
 
 /// What the user asked on the command line.
 struct Options {
@@ -28,6 +39,7 @@ struct Options {
   log::Format log_format = log::Format::text;
   int dimension = 3;               ///< of the scene that init writes
   output::ConvertRequest convert;  ///< convert: all of it but `force`
+  Question question;               ///< estimate
   std::string shell;               ///< completion: "bash", "zsh" or "fish"
 };
 

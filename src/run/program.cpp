@@ -14,10 +14,12 @@
 #include "run/analyze.hpp"
 #include "run/convert.hpp"
 #include "run/ensemble.hpp"
+#include "run/estimate.hpp"
 #include "run/files.hpp"
 #include "run/info.hpp"
 #include "run/make_pack.hpp"
 #include "run/signals.hpp"
+#include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
 
 namespace packmpi::run {
@@ -40,9 +42,10 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
     const auto [nx, ny] = ownership.grid().counts();
     fmt::print(
         "{}\n# {} is sound.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
-        "# lateral grid {} x {} columns: at most {} ranks\n# about {:.0f} particles\n",
+        "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
-        std::int64_t{nx} * ny, expected_particles(scene));
+        std::int64_t{nx} * ny,
+        scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
     fmt::print("# time step of layers {:g} s, thaw {:g} s\n", scene.settling.time_step, scene.thaw);
     fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);
     for (const std::string& line : input::preset_in_use(scene.in)) fmt::print("#   {}\n", line);
@@ -91,6 +94,11 @@ int act(const comm::Comm& comm, const Options& options) {
   if (options.command == Command::convert) {
     const std::string words = convert(comm, options);
     if (comm.rank() == 0) fmt::print("{}", words);
+    return 0;
+  }
+  if (options.command == Command::estimate) {
+    const output::Estimate told = estimate(comm, options);
+    if (comm.rank() == 0) fmt::print("{}", options.question.json ? output::to_json(told) : output::to_table(told));
     return 0;
   }
   const input::Input in = input::read(comm, options.scene, options.overrides);

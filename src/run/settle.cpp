@@ -107,6 +107,8 @@ Settled result(const Pile& pile, const Plan& plan, const Course& course, bool ea
 
 }  // namespace
 
+std::int64_t steps_of(const scene::Scene& scene, Part part) { return plan_of(scene, part).steps; }
+
 std::vector<double> hardening(double soft, double hard) {
   if (!(soft < hard)) return {hard};
   double ratio = hard / soft;

@@ -27,6 +27,9 @@ struct Settled {
 /// is frozen adds nothing to the creep.
 [[nodiscard]] Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& course);
 
+/// Steps of a part at most; fewer if stop = "settled" ends it. Local.
+[[nodiscard]] std::int64_t steps_of(const scene::Scene& scene, Part part);
+
 /// Young's moduli of the stairs from `soft` to `hard`, equal in ratio: stair k lasts from ramp_start(k) on. Square
 /// roots only, so the same bits on any machine. `hard` alone if it is not harder.
 [[nodiscard]] std::vector<double> hardening(double soft, double hard);

@@ -35,6 +35,33 @@ TEST(CommandLine, CommandsAndOptions) {
   EXPECT_EQ(options.verbosity, log::Verbosity::quiet);
 }
 
+TEST(CommandLine, EstimateAsksForWhatIsOpen) {
+  const auto options =
+      std::get<Options>(parse({"estimate", "a.toml", "--particles", "1000", "--height", "50 cm", "--floor", "0.2,open",
+                               "--ranks", "4", "--no-probe", "--json", "--fraction", "0.6"}));
+  EXPECT_EQ(options.command, Command::estimate);
+  EXPECT_EQ(options.question.particles, 1000);
+  EXPECT_EQ(options.question.height, 0.5);
+  EXPECT_EQ(options.question.sides, (std::vector<std::optional<double>>{0.2, std::nullopt}));
+  EXPECT_EQ(options.question.fraction, 0.6);
+  EXPECT_EQ(options.question.ranks, 4);
+  EXPECT_FALSE(options.question.probe);
+  EXPECT_TRUE(options.question.json);
+  EXPECT_TRUE(std::get<Options>(parse({"estimate", "a.toml"})).question.probe);
+  for (const std::vector<const char*>& words : {std::vector<const char*>{"--particles", "0"},
+                                                {"--particles", "-3"},
+                                                {"--height", "tall"},
+                                                {"--height", "-1"},
+                                                {"--floor", "0.2,?"},
+                                                {"--floor", "0,1"},
+                                                {"--fraction", "1.5"},
+                                                {"--ranks", "0"}}) {
+    const auto reply = std::get<Reply>(parse({"estimate", "a.toml", words[0], words[1]}));
+    EXPECT_EQ(reply.code, 2) << words[0] << " " << words[1];
+    EXPECT_NE(reply.text.find(words[0]), std::string::npos) << reply.text;
+  }
+}
+
 TEST(CommandLine, HelpAndVersionAreAnswersNotErrors) {
   const auto help = std::get<Reply>(parse({"--help"}));
   EXPECT_EQ(help.code, 0);

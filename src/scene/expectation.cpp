@@ -1,0 +1,107 @@
+#include "scene/expectation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/volume.hpp"
+#include "scene/limits.hpp"
+
+namespace packmpi::scene {
+namespace {
+
+// Solid fractions far from walls and surface of equal particles, at friction 0, 0.2 and 0.5 (doc/estimate.md).
+using ByFriction = std::array<double, 3>;
+constexpr std::array<double, 3> frictions{0.0, 0.2, 0.5};
+constexpr ByFriction spheres{0.646, 0.620, 0.609}, spheres_without_spin{0.646, 0.595, 0.539};
+constexpr ByFriction discs{0.900, 0.886, 0.886}, discs_without_spin{0.900, 0.833, 0.782};
+// Equal discs crystallise; from this standard deviation of the radius over its mean on they do not.
+constexpr double no_crystal = 0.1;
+constexpr double without_crystal = 0.945;          // discs with spin, by that of equal ones
+constexpr double without_crystal_or_spin = 0.985;  // discs without
+// What size distributions add in 3D, by standard deviation over mean and skewness (Desmond and Weeks 2014, eq. 2, by
+// their 0.634).
+constexpr double by_deviation = 0.0658 / 0.634, by_skewness = 0.0857 / 0.634;
+constexpr double most_added = 0.25;  // beyond what that formula was found for
+// What is missing beside a side wall, in mean diameters; at the surface, in largest diameters, of equal particles and
+// of others.
+constexpr double missing_at_walls = 0.27, missing_at_surface = 0.12, missing_at_uneven_surface = 0.24;
+constexpr double known = 0.01, less_known = 0.025;  // error of spheres like those measured, and of all else
+
+double by_friction(const ByFriction& values, double friction) {
+  if (friction >= frictions[2]) return values[2];
+  const std::size_t k = friction < frictions[1] ? 0 : 1;
+  const double share = (friction - frictions[k]) / (frictions[k + 1] - frictions[k]);
+  return values[k] + share * (values[k + 1] - values[k]);
+}
+
+struct Shape {
+  double deviation, skewness;  // of the radius by number: over the mean; third moment over the deviation's cube
+};
+Shape shape_of(const Sizes& sizes) {
+  const double m1 = sizes.curve().moment(1);
+  const double variance = std::max(0.0, sizes.curve().moment(2) - m1 * m1);
+  const double third = sizes.curve().moment(3) - 3.0 * m1 * sizes.curve().moment(2) + 2.0 * m1 * m1 * m1;
+  const double deviation = std::sqrt(variance);
+  if (!(deviation > 1e-6 * m1)) return {0.0, 0.0};
+  return {deviation / m1, third / (variance * deviation)};
+}
+
+// Of equal particles in the bulk, times this.
+double by_sizes(const Scene& scene, const Shape& shape) {
+  if (scene.box.dimension == 3) {
+    const double added =
+        by_deviation * shape.deviation + by_skewness * shape.skewness * shape.deviation * shape.deviation;
+    return 1.0 + std::clamp(added, 0.0, most_added);
+  }
+  const double least = scene.in.dynamics.rotation ? without_crystal : without_crystal_or_spin;
+  return 1.0 + std::min(1.0, shape.deviation / no_crystal) * (least - 1.0);
+}
+
+// The share of the bulk's fraction that walls and surface leave.
+double by_borders(const Scene& scene) {
+  const double mean = 2.0 * scene.sizes.mean();
+  const double largest = 2.0 * scene.sizes.largest();
+  double left = 1.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+    if (!scene.box.periodic[axis]) left -= missing_at_walls * mean / scene.box.size[axis];
+  }
+  const double missing = scene.sizes.equal() ? missing_at_surface : missing_at_uneven_surface;
+  left *= 1.0 - std::min(0.5, missing * largest / scene.box.height());
+  return std::max(0.5, left);
+}
+
+double mean_volume(const Scene& scene) {
+  return geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+}
+
+}  // namespace
+
+PileFraction expected_fraction(const Scene& scene) {
+  const bool spin = scene.in.dynamics.rotation;
+  const bool flat = scene.box.dimension == 2;
+  const ByFriction& equal = flat ? (spin ? discs : discs_without_spin) : (spin ? spheres : spheres_without_spin);
+  const Shape shape = shape_of(scene.sizes);
+  const double friction = scene.in.contact.friction;
+  const bool usual =
+      !flat && shape.deviation < 0.35 && friction <= frictions[2] && !scene.in.near_field && scene.sizes.ratio() < 4.0;
+  return {by_friction(equal, friction) * by_sizes(scene, shape) * by_borders(scene), usual ? known : less_known};
+}
+
+std::int64_t particles_a_layer(const Scene& scene) {
+  const double solid = scene.in.layers.fraction * scene.box.floor_area() * scene.in.layers.thickness;
+  const double needed = solid / mean_volume(scene);
+  // The last one may overshoot: by half a particle, on average over the drawn radii.
+  return std::max<std::int64_t>(1, std::llround(scene.sizes.equal() ? std::ceil(needed - 1e-9) : needed + 0.5));
+}
+
+double rise_of_layer(const Scene& scene, double fraction) {
+  return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.box.floor_area() * fraction);
+}
+
+std::int64_t expected_layers(const Scene& scene, double fraction) {
+  const double layers = std::ceil(scene.box.height() / rise_of_layer(scene, fraction) - 1e-9);
+  return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene.in));
+}
+
+}  // namespace packmpi::scene

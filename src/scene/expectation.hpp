@@ -1,0 +1,28 @@
+/// What a scene comes to, before it is run: the solid fraction of its pile, its layers and its particles. Estimates,
+/// from what packs came to that were made (doc/estimate.md).
+#pragma once
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace packmpi::scene {
+
+/// Solid volume of a settled pile over floor area times height, the height by layers.height; and what it may be off by.
+struct PileFraction {
+  double value = 0.0;
+  double error = 0.0;
+};
+/// Known: spheres and discs, with and without rotation, at friction 0, 0.2 and 0.5, between which it is linear; wider
+/// size distributions are added by their standard deviation and skewness. Local, pure.
+[[nodiscard]] PileFraction expected_fraction(const Scene& scene);
+
+/// Particles that fill a layer to its fraction; exact for equal radii, else the mean over seeds. Local, pure.
+[[nodiscard]] std::int64_t particles_a_layer(const Scene& scene);
+
+/// Height [m] by which a layer raises a pile of this solid fraction.
+[[nodiscard]] double rise_of_layer(const Scene& scene, double fraction);
+
+/// Layers that fill the scene's height at this solid fraction; layers.maximum at most.
+[[nodiscard]] std::int64_t expected_layers(const Scene& scene, double fraction);
+
+}  // namespace packmpi::scene
