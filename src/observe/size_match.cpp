@@ -113,8 +113,7 @@ std::vector<double> edges_of(const scene::SizeCurve& curve) {
     }
   }
   std::ranges::sort(edges);
-  const auto same = std::ranges::unique(edges);
-  edges.erase(same.begin(), same.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
 

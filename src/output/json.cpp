@@ -2,6 +2,7 @@
 
 #include "output/fields.hpp"
 #include "output/report.hpp"
+#include "output/size_words.hpp"
 
 namespace packmpi::output {
 namespace {
@@ -58,11 +59,13 @@ std::string to_json(const RunRecord& record) {
   for (const LayerColumn& column : layer_columns({})) {
     if (column.unit[0] != '\0') units[column.name] = column.unit;
   }
+  for (const char* diameter : {"d10", "d30", "d50", "d60", "d90"}) units[diameter] = "m";
   Json root;
   root["format"] = "packmpi-summary";
   root["format_version"] = 1;
   root["asked"] = to_object(asked_fields(record));
   root["got"] = to_object(got_fields(record));
+  root["sizes"] = to_json(record.sizes);
   root["audit"] = to_object(audit_fields(record.audit));
   root["layers"] = to_rows(record);
   root["counters"] = to_numbers(record.counters);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "observe/size_match.hpp"
 
 namespace packmpi::output {
 
@@ -69,6 +70,7 @@ struct RunRecord {
   double floor_force = 0.0;        ///< [N]
   double weight = 0.0;             ///< [N] m g of all particles
   double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
+  observe::SizeMatches sizes;                                                     ///< with what was asked
   double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
   double duration = 0.0;  ///< [s] simulated

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "output/report.hpp"
+#include "output/size_words.hpp"
 
 namespace packmpi::output {
 namespace {
@@ -31,6 +32,9 @@ void compare(Buffer& out, const RunRecord& r) {
   line(out, "standard deviation of the radius [m]", number(r.sd_radius_asked), number(r.sd_radius));
   line(out, "smallest radius [m]", number(r.min_radius_asked), number(r.min_radius));
   line(out, "largest radius [m]", number(r.max_radius_asked), number(r.max_radius));
+  if (r.min_radius_asked < r.max_radius_asked) {
+    for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.asked, size.got);
+  }
   line(out, "touching particles, mean", "", number(r.coordination));
   line(out, "rattlers, share", "", number(r.rattlers));
   line(out, "overlap / smaller radius, mean", "", number(r.mean_overlap));

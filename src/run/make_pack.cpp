@@ -140,6 +140,22 @@ void write_outputs(const Pile& pile, const Files& files, output::RunRecord& reco
   output::write_text(pile.comm, files.summary, output::to_json(record));
 }
 
+// How near the sizes are to those asked; one line of the log.
+void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
+  if (scene.sizes.equal()) return;
+  log::event("sizes",
+             fmt::format("sizes: D50 by mass {:.4g} m, asked {:.4g}; Cu {:.3g}, asked {:.3g}; the curves differ by at "
+                         "most {:.2g} by number, {:.2g} by mass",
+                         sizes.by_mass.got.d50, sizes.by_mass.asked.d50, sizes.by_mass.got.uniformity(),
+                         sizes.by_mass.asked.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
+             {{"d50_by_mass", sizes.by_mass.got.d50},
+              {"d50_by_mass_asked", sizes.by_mass.asked.d50},
+              {"cu_by_mass", sizes.by_mass.got.uniformity()},
+              {"cu_by_mass_asked", sizes.by_mass.asked.uniformity()},
+              {"distance_by_number", sizes.by_number.distance},
+              {"distance_by_mass", sizes.by_mass.distance}});
+}
+
 }  // namespace
 
 output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
@@ -156,6 +172,7 @@ output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
   pile_up(pile, journal, keeper, stand, record);
   journal.finish();
   got(pile, record);
+  tell_sizes(scene, record.sizes);
   record.wall_seconds = comm.max(watch.seconds());
   record.particle_steps_per_second =
       static_cast<double>(record.particle_steps - pile.earlier_particle_steps) / record.wall_seconds;

@@ -88,6 +88,7 @@ void got(const Pile& pile, output::RunRecord& record) {
   record.sd_radius = sizes.sd;
   record.min_radius = sizes.min;
   record.max_radius = sizes.max;
+  record.sizes = observe::size_match(comm, pile.store, scene.sizes.curve());
   record.steps = pile.steps;
   record.thaw_steps = pile.thaw_steps;
   record.duration = pile.time();
