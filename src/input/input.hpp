@@ -120,6 +120,7 @@ struct Checkpoint {
 
 struct Output {
   bool contacts = false;   ///< write /contacts
+  bool analysis = false;   ///< write NAME.analysis.json
   double log_every = 0.0;  ///< [s] of simulated time between rows of NAME.steps.csv; 0: each step
 };
 

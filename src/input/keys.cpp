@@ -294,6 +294,7 @@ std::vector<Key> program_keys() {
     word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("10min")",
          "Wall time between checkpoints (\"30 s\", \"10min\", \"2h\"), or time steps (\"5000 steps\"); \"off\": only when told to stop."),
     word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),
+    word("output.analysis", at(&Input::output, &Output::analysis), "false", "Measure the pack inside when it is done, as `packmpi analyze` would: NAME.analysis.json."),
     real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
          "Simulated time between rows of NAME.steps.csv; 0: a row each step."),
     word("petsc.options", at(&Input::petsc, &Petsc::options), R"("")", "Passed to PETSc as they are: \"-log_view\"."),

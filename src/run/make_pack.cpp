@@ -12,6 +12,7 @@
 #include "output/pack.hpp"
 #include "output/report.hpp"
 #include "rsa/insert.hpp"
+#include "run/analyze.hpp"
 #include "run/counters.hpp"
 #include "run/course.hpp"
 #include "run/files.hpp"
@@ -156,11 +157,9 @@ void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
               {"distance_by_mass", sizes.by_mass.distance}});
 }
 
-}  // namespace
-
-output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+// The pack in its file; the particles are let go.
+output::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files) {
   const Stopwatch watch;
-  const Files files = claim_files(comm, scene, options);
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   Pile pile(comm, scene);
@@ -178,6 +177,15 @@ output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
       static_cast<double>(record.particle_steps - pile.earlier_particle_steps) / record.wall_seconds;
   write_outputs(pile, files, record);
   keeper.finished();
+  return record;
+}
+
+}  // namespace
+
+output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const Files files = claim_files(comm, scene, options);
+  output::RunRecord record = make(comm, scene, options, files);
+  if (scene.in.output.analysis) (void)analyze(comm, files.pack);
   return record;
 }
 

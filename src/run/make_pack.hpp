@@ -7,11 +7,11 @@
 
 namespace packmpi::run {
 
-/// Collective. Makes the pack of a scene and writes NAME.hdf, NAME.json, NAME.log and NAME.steps.csv into
-/// options.folder. Throws Error on all ranks: bad_input (existing outputs without --force; RSA cannot reach phi_0),
-/// numerical_failure, io_failure; bad_checkpoint (options.restart); stopped_early, with a checkpoint written (signals,
-/// limits, a STOP file). Checkpoints are removed once the pack is written. A pack that misses a target is written all
-/// the same: see RunRecord::reached and the audit.
+/// Collective. Makes the pack of a scene and writes NAME.hdf, NAME.json, NAME.log and NAME.steps.csv
+/// (NAME.analysis.json, if asked for) into options.folder. Throws Error on all ranks: bad_input (existing outputs
+/// without --force; RSA cannot reach phi_0), numerical_failure, io_failure; bad_checkpoint (options.restart);
+/// stopped_early, with a checkpoint written (signals, limits, a STOP file). Checkpoints are removed once the pack is
+/// written. A pack that misses a target is written all the same: see RunRecord::reached and the audit.
 [[nodiscard]] output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
 
 /// Whether the record is what was asked: height reached, nothing lost, nothing outside, no deep overlap.

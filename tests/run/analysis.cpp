@@ -4,8 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
+#include "input/read.hpp"
+#include "run/analyze.hpp"
+#include "run/make_pack.hpp"
 #include "run/pile.hpp"
 #include "support/scenes.hpp"
 
@@ -164,6 +170,39 @@ TEST_F(Analysis, RattlersAreReleasedOneAfterTheOther) {
   EXPECT_EQ(a.network.loose, 2.0 / 8.0);
   EXPECT_EQ(a.network.rattlers, 1.0);
   EXPECT_EQ(a.network.held_coordination, 0.0);
+}
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(Analysis, ARunWritesItIfAskedTo) {
+  const std::string text =
+      "[container]\nsize = [0.3, 0.3, 0.1]\n"
+      "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\npoisson_ratio = 0.25\n"
+      "radius = { distribution = \"uniform\", min = 0.015, max = 0.02, weighting = \"number\" }\n"
+      "[layers]\nthickness = 0.1\nfraction = 0.25\nduration = 0.02\nmaximum = 2\n[jamming]\ngravity = 2.0\n";
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("packmpi_analysis_" + std::to_string(comm_.size()));
+  const std::filesystem::path file = folder / "box.analysis.json";
+  Options options;
+  options.folder = folder.string();
+  options.force = true;
+  options.verbosity = log::Verbosity::quiet;
+  if (comm_.rank() == 0) std::filesystem::remove_all(folder);
+  comm_.barrier();
+  (void)make_pack(comm_, scene::build(input::parse(text, "box.toml", {})), options);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  comm_.barrier();
+  (void)make_pack(comm_, scene::build(input::parse(text, "box.toml", {{"output.analysis=true"}})), options);
+  const std::string written = contents(file);
+  EXPECT_GT(written.size(), 1000U);
+  comm_.barrier();
+  (void)analyze(comm_, (folder / "box.hdf").string());
+  EXPECT_EQ(written, contents(file));
+  comm_.barrier();
+  if (comm_.rank() == 0) std::filesystem::remove_all(folder);
 }
 
 }  // namespace
