@@ -117,7 +117,7 @@ std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& s
   const h5::Slab slab{static_cast<hsize_t>(state.count), 0, 0};
   const std::vector<RecordRow> none;
   const std::vector<h5::Column> plan = plan_columns(slab, none, layout);
-  return whole_file_bytes([&](hid_t file) { write_frame(file, plan, state, 0); });
+  return whole_file_bytes(plan, [&](hid_t file) { write_frame(file, plan, state, 0); });
 }
 
 }  // namespace packmpi::output

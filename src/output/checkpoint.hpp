@@ -12,7 +12,7 @@
 
 namespace packmpi::output {
 
-inline constexpr std::int64_t checkpoint_version = 1;
+inline constexpr std::int64_t checkpoint_version = 2;
 
 /// What a run does next.
 enum class Phase {

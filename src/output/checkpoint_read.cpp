@@ -10,6 +10,7 @@
 #include "output/hdf5.hpp"
 #include "output/run_state.hpp"
 #include "output/scatter.hpp"
+#include "output/seal.hpp"
 
 namespace packmpi::output {
 namespace {
@@ -56,6 +57,7 @@ std::string read_bytes(hid_t file, const std::string& path) {
 
 h5::Handle open_file(const std::string& path) {
   if (!std::filesystem::exists(path)) refuse("there is no such file");
+  (void)check_frame(path);  // the particles are held to their own digest
   h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it");
   if (H5Aexists(file.get(), "format_version") <= 0 || H5Aexists(file.get(), "text_digest") <= 0) {
     refuse("it is not a checkpoint of packmpi");

@@ -136,6 +136,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
     file.emplace(request.pack);
     scene = scene_of(*file);
   });
+  check_pack(comm, request.pack);
   check_copies(request, scene.box);
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);

@@ -103,6 +103,14 @@ std::int64_t MemoryFile::size() const {
   return size;
 }
 
+std::string MemoryFile::read(std::int64_t begin, std::int64_t size) const {
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (pread(fd_, bytes.data(), bytes.size(), begin) != size) {
+    throw Error(ExitCode::io_failure, "cannot read from memory what was written there");
+  }
+  return bytes;
+}
+
 void MemoryFile::copy_to(Descriptor& disk) const {
   const off_t size = lseek(fd_, 0, SEEK_END);
   reserve_open(disk, disk.path(), size);

@@ -48,6 +48,8 @@ class MemoryFile {
   [[nodiscard]] std::int64_t size() const;  ///< [bytes], holes included; throws Error(io_failure)
   /// Makes `disk` as long as this file, its space on the disk, and writes to it what was written here.
   void copy_to(Descriptor& disk) const;
+  /// Holes are zeros. Throws Error(io_failure).
+  [[nodiscard]] std::string read(std::int64_t begin, std::int64_t size) const;
 
  private:
   int fd_;

@@ -22,7 +22,7 @@ std::int64_t pack_bytes(const RunRecord& record, bool rotation, std::int64_t par
   block.has_contacts = contacts.has_value();
   block.contacts = {static_cast<hsize_t>(contacts.value_or(0)), 0, 0};
   const std::vector<h5::Column> plan = plan_columns(block);
-  return whole_file_bytes([&](hid_t file) { write_frame(file, block, plan, record); });
+  return whole_file_bytes(plan, [&](hid_t file) { write_frame(file, block, plan, record); });
 }
 
 }  // namespace packmpi::output

@@ -43,15 +43,20 @@ struct PackRows {
   std::vector<double> radius;
   std::vector<std::int32_t> layer, contacts;
 };
-/// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure).
+/// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure), also if any of it is
+/// not what was written.
 [[nodiscard]] PackRows read_pack(const std::string& path);
+
+/// Collective. Throws Error(io_failure) unless every byte of the pack is as it was written. Cost: one reading of it
+/// all, shared by the ranks.
+void check_pack(const comm::Comm& comm, const std::string& path);
 
 /// One rank's share of a pack, and the scene it was made from.
 struct PackSlice {
   PackRows rows;      ///< [rank N / ranks, (rank + 1) N / ranks)
   std::string scene;  ///< the effective input, TOML
 };
-/// Rank-local: every rank reads its own share. Throws Error(io_failure).
+/// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
 
 /// Rank-local. Whether PATH is a pack, sound or not, rather than another file.

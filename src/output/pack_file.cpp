@@ -73,7 +73,7 @@ std::vector<Row> read_rows(hid_t file, const std::string& path, const Range& ran
 }  // namespace
 
 PackFile::PackFile(const std::string& path)
-    : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it") {
+    : seal_(check_frame(path)), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it") {
   if (const auto version = read_number<std::int64_t>(file_.get(), "/", "format_version"); version != 1) {
     throw Error(ExitCode::io_failure, fmt::format("format version {} is not known here", version));
   }

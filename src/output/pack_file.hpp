@@ -5,6 +5,7 @@
 
 #include "output/hdf5.hpp"
 #include "output/pack.hpp"
+#include "output/seal.hpp"
 
 namespace packmpi::output {
 
@@ -12,9 +13,11 @@ namespace packmpi::output {
 /// path.
 class PackFile {
  public:
-  /// Opens it and checks the format version and the shape of /particles/id.
+  /// Opens it, once all but its rows is known to be what was written; checks the format version and the shape of
+  /// /particles/id. Whoever reads rows calls check_rows() with seal() before.
   explicit PackFile(const std::string& path);
 
+  [[nodiscard]] const Seal& seal() const noexcept { return seal_; }
   [[nodiscard]] int dimension() const noexcept { return dimension_; }
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }  ///< particles
   [[nodiscard]] bool rotation() const noexcept { return rotation_; }    ///< spins are there
@@ -24,6 +27,7 @@ class PackFile {
   [[nodiscard]] double number(const char* object, const char* attribute) const;
 
  private:
+  Seal seal_;
   h5::Handle file_;
   int dimension_ = 3;
   std::int64_t count_ = 0;

@@ -1,11 +1,30 @@
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "output/pack_file.hpp"
 #include "output/scatter.hpp"
+#include "output/seal.hpp"
 
 namespace packmpi::output {
+namespace {
+
+/// Whether the beginning of a damaged file names this format and not the other.
+bool looks_like_pack(const std::string& path) {
+  constexpr std::size_t look = 65536;
+  std::string begin(look, '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.find("packmpi-pack") != std::string::npos && begin.find("packmpi-checkpoint") == std::string::npos;
+}
+
+}  // namespace
 
 bool is_pack(const std::string& path) {
+  try {
+    (void)check_frame(path);
+  } catch (const Error&) {  // nothing for HDF5 to open
+    return looks_like_pack(path);
+  }
   const h5::Quiet quiet;
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return false;
@@ -18,19 +37,38 @@ namespace {
 
 // The path belongs to every complaint.
 template <class Read>
-auto read_from(const std::string& path, Read&& read) {
-  const h5::Quiet quiet;
+auto told(const std::string& path, Read&& read) {
   try {
-    return read(PackFile(path));
+    return read();
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("cannot read {}: {}", path, error.what()));
   }
 }
 
+template <class Read>
+auto read_from(const std::string& path, Read&& read) {
+  const h5::Quiet quiet;
+  return told(path, [&] { return read(PackFile(path)); });
+}
+
 }  // namespace
 
 PackRows read_pack(const std::string& path) {
-  return read_from(path, [](const PackFile& file) { return file.rows(0, file.count()); });
+  return read_from(path, [&](const PackFile& file) {
+    check_rows(file.seal(), row_digests(path, file.seal(), 0, 1));
+    return file.rows(0, file.count());
+  });
+}
+
+void check_pack(const comm::Comm& comm, const std::string& path) {
+  std::vector<std::int64_t> digests;
+  Seal seal;
+  comm::agree_on(comm, [&] {
+    seal = told(path, [&] { return check_frame(path); });
+    digests = told(path, [&] { return row_digests(path, seal, comm.rank(), comm.size()); });
+  });
+  comm.sum(std::span(digests));
+  comm::agree_on(comm, [&] { told(path, [&] { check_rows(seal, digests); }); });
 }
 
 PackSlice read_slice(const std::string& path, Rank rank, int ranks) {

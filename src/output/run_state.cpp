@@ -104,6 +104,7 @@ RunState state_of(const std::string& text) {
   } catch (const Json::exception& error) {
     throw Error(ExitCode::bad_checkpoint, fmt::format("/state is not what it should be: {}", error.what()));
   }
+  if (to_text(state) != text) throw Error(ExitCode::bad_checkpoint, "/state is not what it should be: it says more");
   return state;
 }
 

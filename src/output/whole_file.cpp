@@ -6,16 +6,14 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
+#include <span>
 
 #include "output/files.hpp"
+#include "output/seal.hpp"
 
 namespace packmpi::output {
 namespace {
-
-/// Where each column's rows begin in the file [bytes].
-using Places = std::vector<std::int64_t>;
 
 std::int64_t bytes_of_rows(const std::vector<h5::Column>& plan) {
   std::int64_t bytes = 0;
@@ -38,45 +36,76 @@ void together(const comm::Comm& comm, const std::string& path, Step&& step) {
 }
 
 /// On rank 0: the file with everything but the rows, and the disk space for them. HDF5 makes it in memory, where the
-/// rows are a hole.
-Places make_frame(const std::string& path, const std::vector<h5::Column>& plan,
-                  const std::function<void(hid_t)>& frame) {
+/// rows are a hole. The seal as far as known: without the digests of the rows.
+Seal make_frame(const std::string& path, const std::vector<h5::Column>& plan, const std::function<void(hid_t)>& frame) {
   reserve(path, bytes_of_rows(plan));
   const MemoryFile memory(path);
   h5::Handle file = h5::create_file(path, memory);
   frame(file.get());
-  Places places;
-  for (const h5::Column& column : plan) places.push_back(h5::place_of(file.get(), column));
+  Seal seal;
+  for (const h5::Column& column : plan) {
+    seal.columns.push_back({.place = h5::place_of(file.get(), column),
+                            .rows = static_cast<std::int64_t>(column.slab.total),
+                            .row_bytes = static_cast<std::int64_t>(h5::row_bytes(column))});
+  }
   file.close("close the file");
+  seal.end = memory.size();
+  seal.frame = frame_digest(seal, [&](std::int64_t begin, std::int64_t size) { return memory.read(begin, size); });
   Descriptor disk(path, O_WRONLY);
   memory.copy_to(disk);
   disk.close();
-  return places;
+  return seal;
 }
 
-/// This rank's rows, down to the disk.
-void write_rows(const std::string& path, const std::vector<h5::Column>& plan, const Places& places) {
+/// This rank's rows, down to the disk. Their digests, a column each.
+std::vector<std::int64_t> write_rows(const std::string& path, const std::vector<h5::Column>& plan,
+                                     const std::vector<std::int64_t>& places) {
+  std::vector<std::int64_t> digests(plan.size());
   Descriptor disk(path, O_WRONLY);
   for (std::size_t k = 0; k < plan.size(); ++k) {
     if (plan[k].slab.count == 0) continue;
-    const auto before = static_cast<std::int64_t>(plan[k].slab.offset * h5::row_bytes(plan[k]));
-    disk.write_at(plan[k].bytes(), places[k] + before);
+    const auto first = static_cast<std::int64_t>(plan[k].slab.offset);
+    const std::vector<std::byte> bytes = plan[k].bytes();
+    digests[k] = static_cast<std::int64_t>(rows_digest(bytes, h5::row_bytes(plan[k]), first));
+    disk.write_at(bytes, places[k] + first * static_cast<std::int64_t>(h5::row_bytes(plan[k])));
   }
   disk.sync();
+  disk.close();
+  return digests;
+}
+
+/// The places of all columns' rows, on every rank.
+std::vector<std::int64_t> share_places(const comm::Comm& comm, const Seal& seal, std::size_t columns) {
+  std::vector<std::int64_t> places(columns);
+  if (comm.rank() == 0) {
+    for (std::size_t k = 0; k < columns; ++k) places[k] = seal.columns[k].place;
+  }
+  comm.max(std::span(places));
+  return places;
+}
+
+void write_seal(const std::string& path, Seal seal, const std::vector<std::int64_t>& digests) {
+  for (std::size_t k = 0; k < digests.size(); ++k) seal.columns[k].digest = static_cast<std::uint64_t>(digests[k]);
+  const std::string bytes = to_bytes(seal);
+  Descriptor disk(path, O_WRONLY);
+  disk.write_at(std::as_bytes(std::span(bytes)), seal.end);
   disk.close();
 }
 
 /// The file under its temporary name.
 void write_temporary(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
                      const std::function<void(hid_t)>& frame) {
-  Places places(plan.size());
+  Seal seal;
   together(comm, path, [&] {
-    if (comm.rank() == 0) places = make_frame(path, plan, frame);
+    if (comm.rank() == 0) seal = make_frame(path, plan, frame);
   });
-  const std::size_t size = places.size() * sizeof places[0];
-  const std::string shared = comm.broadcast(0, {reinterpret_cast<const char*>(places.data()), size});
-  if (size > 0) std::memcpy(places.data(), shared.data(), size);
-  together(comm, path, [&] { write_rows(path, plan, places); });
+  const std::vector<std::int64_t> places = share_places(comm, seal, plan.size());
+  std::vector<std::int64_t> digests(plan.size());
+  together(comm, path, [&] { digests = write_rows(path, plan, places); });
+  comm.sum(std::span(digests));
+  together(comm, path, [&] {
+    if (comm.rank() == 0) write_seal(path, seal, digests);
+  });
 }
 
 }  // namespace
@@ -96,7 +125,7 @@ void write_whole_file(const comm::Comm& comm, const std::string& path, const std
   }
 }
 
-std::int64_t whole_file_bytes(const std::function<void(hid_t)>& frame) {
+std::int64_t whole_file_bytes(const std::vector<h5::Column>& plan, const std::function<void(hid_t)>& frame) {
   const h5::Quiet quiet;
   std::error_code ignored;
   std::string name = (std::filesystem::temp_directory_path(ignored) / "packmpi-XXXXXX").string();
@@ -114,7 +143,8 @@ std::int64_t whole_file_bytes(const std::function<void(hid_t)>& frame) {
   discard(name);
   frame(file.get());
   file.close("close the file");
-  return memory.size();
+  const Seal seal{std::vector<SealedRows>(plan.size())};
+  return memory.size() + static_cast<std::int64_t>(to_bytes(seal).size());
 }
 
 }  // namespace packmpi::output

@@ -39,6 +39,7 @@ void take_share(const output::PackRows& rows, particles::Store& store) {
 }  // namespace
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
+  output::check_pack(comm, path);
   output::PackSlice slice;
   comm::agree_on(comm, [&] { slice = output::read_slice(path, comm.rank(), comm.size()); });
   double range = 0.0;

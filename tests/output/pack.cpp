@@ -241,5 +241,26 @@ TEST_F(Pack, ReaderRefusesWhatIsNoPack) {
   }
 }
 
+// By the reader of the whole, and by all ranks together. The last byte stands for every way to cut the seal off.
+TEST_F(Pack, AFlippedBitAnywhereIsRefused) {
+  const auto layout = particles::layout_of(3, true);
+  const std::string path = write("sound.hdf", layout, testing::some_grains(137, 3), Spread::all, true);
+  const std::string damaged_path = folder_.file("damaged.hdf");
+  std::ifstream file(path, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NO_THROW(check_pack(comm_, path));
+  for (std::size_t at = 0; at < whole.size();
+       at += whole.size() - at == 1 ? 1 : std::min<std::size_t>(211, whole.size() - at - 1)) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
+    comm_.barrier();
+    if (comm_.rank() == 0) std::ofstream(damaged_path, std::ios::binary) << damaged;
+    comm_.barrier();
+    EXPECT_THROW(check_pack(comm_, damaged_path), Error) << "byte " << at << " of " << whole.size();
+    EXPECT_THROW((void)read_pack(damaged_path), Error) << "byte " << at << " of " << whole.size();
+    EXPECT_TRUE(is_pack(damaged_path) || at < 65536) << "byte " << at;
+  }
+}
+
 }  // namespace
 }  // namespace packmpi::output
