@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
-# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers] [--report]
+# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers] [--report] [--fuzz] [--valgrind]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
 #   --peers   also LAMMPS and LIGGGHTS, to compare with
 #   --readers also LAMMPS, LIGGGHTS, YADE and VTK, which read packs that were converted for them
@@ -8,6 +8,8 @@
 #   --report  also what --render brings, and Chromium, in which the test of scripts/report.py reads its page
 #   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/check.sh
+#   --fuzz    also clang with libFuzzer, for scripts/fuzz.sh
+#   --valgrind also valgrind, for scripts/valgrind.sh
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libeigen3-dev
@@ -22,7 +24,9 @@ for option in "$@"; do
     --report) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth chromium fonts-dejavu-core) ;;
     --site) packages+=(mkdocs mkdocs-material) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;
-    *) sed -n '2,10s/^# //p' "$0" >&2; exit 2 ;;
+    --fuzz) packages+=(clang libclang-rt-14-dev llvm) ;;
+    --valgrind) packages+=(valgrind) ;;
+    *) sed -n '2,12s/^# //p' "$0" >&2; exit 2 ;;
   esac
 done
 

@@ -107,6 +107,17 @@ TEST(BadInput, NestingThatWouldOverflowTheStack) {
             "a.toml:2: a key of too many parts; no key has more than three");
 }
 
+// toml++ 3.3 tells the compiler that U+00A1 to U+0499 cannot come where it looks for blanks. No compiler may make
+// blanks of them: they would be passed over.
+TEST(BadInput, LettersThatAreNoBlanks) {
+  for (unsigned code = 0xa1; code < 0x49a; ++code) {
+    const std::string letter{static_cast<char>(0xc0U | code >> 6U), static_cast<char>(0x80U | (code & 0x3fU))};
+    EXPECT_NE(complaint_of_set({"layers.fraction=0.25 " + letter}), "") << code;
+    EXPECT_NE(complaint([&] { (void)parse("seed = 1 " + letter + "\n" + good, "a.toml", {}); }), "") << code;
+    EXPECT_EQ(complaint([&] { (void)parse("# " + letter + "\n" + good, "a.toml", {}); }), "") << code;
+  }
+}
+
 TEST(BadInput, FolderAndMissingFile) {
   const comm::Comm world(MPI_COMM_WORLD);
   const std::string folder = bad_folder.string(), nowhere = (bad_folder / "no_such_file.toml").string();
