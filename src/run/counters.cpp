@@ -61,6 +61,7 @@ std::vector<Number> costs_of(const Pile& pile) {
 // On rank 0; nothing on the others.
 std::vector<output::RankNumbers> gathered(const comm::Comm& comm, const std::vector<Number>& numbers) {
   std::vector<std::int64_t> mine;
+  mine.reserve(numbers.size());
   for (const Number& number : numbers) mine.push_back(number.mine);
   const std::vector<std::int64_t> all = comm.gather(mine);
   std::vector<output::RankNumbers> result;
