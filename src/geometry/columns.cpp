@@ -7,13 +7,36 @@
 namespace packmpi::geometry {
 namespace {
 
+constexpr double countable = 1 << 30;  // columns an axis
+
 /// The largest n with length / n >= reach as doubles divide, at least 1.
 int columns_along(double length, double reach) {
   const double fitting = std::floor(length / reach);
-  assert(fitting <= double{1 << 30});
+  assert(fitting <= countable);
   int n = std::max(1, static_cast<int>(fitting));
   while (n > 1 && length / n < reach) --n;
   return n;
+}
+
+/// The widths that columns must have at least so that there are no more than `most`: `reach`, unless they would be.
+std::array<double, 2> least_widths(const Box& box, double reach, std::int64_t most) {
+  std::array<double, 2> least{reach, reach};
+  const auto lateral = static_cast<std::size_t>(box.lateral_axes());
+  const auto columns = [&] {
+    double all = 1.0;
+    for (std::size_t a = 0; a < lateral; ++a) all *= std::max(1.0, std::floor(box.size[a] / least[a]));
+    return all;
+  };
+  const auto bound = static_cast<double>(most);
+  double width = reach;
+  for (double all = columns(); all > bound; all = columns()) {  // ends: each turn shrinks the excess, by 1 % at least
+    width *= std::max(1.01, lateral == 2 ? std::sqrt(all / bound) : all / bound);
+    for (std::size_t a = 0; a < lateral; ++a) {
+      const double widest = box.periodic[a] ? box.size[a] / 3.0 * (1.0 - 1e-12) : box.size[a];  // three fit, rounded
+      least[a] = std::max(reach, std::min(width, widest));
+    }
+  }
+  return least;
 }
 
 /// The coordinates next to c along an axis of n columns, c among them.
@@ -31,10 +54,11 @@ std::vector<int> around(int c, int n, bool periodic) {
 
 }  // namespace
 
-ColumnGrid::ColumnGrid(const Box& box, double reach) : box_(box) {
-  assert(reach > 0.0);
+ColumnGrid::ColumnGrid(const Box& box, double reach, std::int64_t most) : box_(box) {
+  assert(reach > 0.0 && most >= 9 && static_cast<double>(most) <= countable);
+  const std::array<double, 2> least = least_widths(box, reach, most);
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {
-    counts_[axis] = columns_along(box.size[axis], reach);
+    counts_[axis] = columns_along(box.size[axis], least[axis]);
     widths_[axis] = box.size[axis] / counts_[axis];
     inverse_widths_[axis] = counts_[axis] / box.size[axis];
   }

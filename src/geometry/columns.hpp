@@ -16,8 +16,9 @@ using ColumnIndex = std::int64_t;  ///< ix + nx * iy, global
 class ColumnGrid {
  public:
   ColumnGrid() = default;
-  /// Preconditions (asserted): reach > 0, at most 2^30 columns an axis.
-  ColumnGrid(const Box& box, double reach);
+  /// At most `most` columns in all, wider ones where they would be more; but a periodic axis keeps three if it has room
+  /// for them, and every axis one. Preconditions (asserted): reach > 0, 9 <= most <= 2^30.
+  ColumnGrid(const Box& box, double reach, std::int64_t most = std::int64_t{1} << 30);
 
   [[nodiscard]] const Box& box() const noexcept { return box_; }
   [[nodiscard]] std::array<int, 2> counts() const noexcept { return counts_; }

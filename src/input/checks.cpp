@@ -206,18 +206,33 @@ void check_counts(const Case& scene) {
   double typical = scene.largest();  // of the others, that many at least; scene::build knows more
   if (by_number && radius.distribution == SizeDistribution::gaussian) typical = radius.mean;
   if (by_number && radius.distribution == SizeDistribution::uniform) typical = 0.5 * (radius.min + radius.max);
-  const double count = scene.particles_in(scene.height(), settled, typical);
+  const double most = layers.maximum > 0 ? static_cast<double>(layers.maximum) : HUGE_VAL;  // layers
+  const double count = std::min(scene.particles_in(scene.height(), settled, typical),
+                                most * scene.particles_in(layers.thickness, layers.fraction, typical));
   if (!(count <= most_particles)) {
     scene.refuse("container.size",
                  fmt::format("about {:.2g} particles, more than 2^40; make the container smaller or the "
                              "particles larger",
                              count));
   }
-  const double layer_count = settled / layers.fraction * (scene.height() / layers.thickness);
+  const double layer_count = std::min(most, settled / layers.fraction * (scene.height() / layers.thickness));
   if (!(layer_count <= most_layers)) {
     scene.refuse("layers.fraction",
                  fmt::format("about {:.2g} layers, more than 2^24; insert thicker or denser layers", layer_count));
   }
+}
+
+/// Overlaps are differences of positions.
+void check_resolution(const Case& scene) {
+  constexpr double widest = 1e9;  // there two neighbouring doubles are 1e-7 radii apart
+  const auto check = [&](const char* key, double length) {
+    if (length <= widest * scene.smallest()) return;
+    scene.refuse(key, fmt::format("{:g} m is {:.2g} times the smallest radius; beyond {:g} positions could not tell "
+                                  "overlaps; make it smaller or the particles larger",
+                                  length, length / scene.smallest(), widest));
+  };
+  for (const double length : scene.in.container.size) check("container.size", length);
+  check("layers.thickness", scene.in.layers.thickness);
 }
 
 /// One of the two time steps against what it must fit into.
@@ -300,6 +315,7 @@ void check(const Input& in, const Document& document) {
   check_fit(scene);
   check_fraction(scene);
   check_counts(scene);
+  check_resolution(scene);
   check_time(scene);
   check_stages(scene);
   check_features(scene);

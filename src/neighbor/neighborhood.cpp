@@ -18,13 +18,19 @@ constexpr double live_on = 0.8;
 // No particle of a sound run is this many container heights up.
 constexpr double highest = 1000.0;
 
-// Levels of cells up to `top`. One cell holds all above the highest place of a sound run, so that a particle flung up
-// costs no memory, and cells can always be counted in a LocalIndex.
-int levels_to(double top, const scene::Scene& scene, const Cells& cells, int columns) {
+// Sets the levels of cells up to `top`, as high as a column is wide. One cell holds all above the highest place of a
+// sound run, so that a particle flung up costs no memory. Where there would be far more cells than particles they are
+// higher, which also keeps their number in a LocalIndex.
+void set_levels(Cells& cells, double top, const scene::Scene& scene, int columns, LocalIndex owned) {
+  constexpr double always = 0x1p22, a_particle = 64.0;
   const double most = static_cast<double>(scene::most_layers(scene.in) + 1) * scene.in.layers.thickness;
-  const double levels = std::max(std::min(top, most) - cells.bottom, 0.0) * cells.inverse_height;
-  const double countable = static_cast<double>(std::numeric_limits<LocalIndex>::max() - 1) / std::max(columns, 1) - 1.0;
-  return static_cast<int>(std::min(levels, std::max(countable, 0.0))) + 1;
+  const double height = std::max(std::min(top, most) - cells.bottom, 0.0);
+  const double affordable =
+      std::min(std::max(always, a_particle * owned), double{std::numeric_limits<LocalIndex>::max() - 1});
+  const double levels = std::max(affordable / std::max(columns, 1) - 1.0, 0.0);
+  const double wanted = height / scene.column_width();
+  cells.inverse_height = wanted <= levels ? 1.0 / scene.column_width() : levels / height;
+  cells.levels = static_cast<int>(std::min(wanted, levels)) + 1;
 }
 
 }  // namespace
@@ -168,9 +174,8 @@ void Neighborhood::sort_owned(particles::Store& store) {
     top = std::max(top, store.position(i)[vertical]);
     bottom = std::min(bottom, store.position(i)[vertical]);
   }
-  cells_.inverse_height = 1.0 / scene_->column_width();
   cells_.bottom = still_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
-  cells_.levels = levels_to(comm_->max(top), *scene_, cells_, columns_.total());
+  set_levels(cells_, comm_->max(top), *scene_, columns_.total(), store.owned());
   const auto levels = static_cast<std::size_t>(cells_.levels);
   cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
 

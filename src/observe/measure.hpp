@@ -17,11 +17,12 @@ namespace packmpi::observe {
 
 /// Mean over lateral columns about one largest diameter wide (floor(L / (2 r_max)) per axis, at least 1) of the highest
 /// particle top in the column (by centre; an empty column counts 0) [m]. Collective; a PETSc DMDA vector holds the
-/// columns.
-[[nodiscard]] double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
+/// columns, or of more than `most_stored` (128 MiB) those that are not empty go by mail: the same bits.
+[[nodiscard]] double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                                    std::int64_t most_stored = std::int64_t{1} << 24);
 /// The same over the owned particles of several stores together.
 [[nodiscard]] double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
-                                    const scene::Scene& scene);
+                                    const scene::Scene& scene, std::int64_t most_stored = std::int64_t{1} << 24);
 
 /// Solid fractions (CC16 eq. 22).
 struct Density {

@@ -11,6 +11,7 @@ namespace {
 constexpr double low_bulk = 0.2, high_bulk = 0.8;  // of H_d
 constexpr double slabs_a_diameter = 4.0;
 constexpr double diameters_a_layer = 3.0;
+constexpr std::size_t most_slabs = 1 << 20;  // across a container; wider ones in one that is wider
 
 std::size_t bins_in(double length, double width) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(length / width - 1e-9)));
@@ -29,8 +30,8 @@ Profile density_profile(const Specimen& pack, int axis) {
   const bool vertical = axis == box.vertical();
   const double length = vertical ? top(pack.comm, pack.store, pack.scene) : box.size[a];
   const double width = 2.0 * pack.scene.sizes.mean() / slabs_a_diameter;
-  Profile profile{
-      .from = 0.0, .width = vertical ? width : length / static_cast<double>(bins_in(length, width)), .values = {}};
+  const std::size_t slabs = std::min(bins_in(length, width), most_slabs);
+  Profile profile{.from = 0.0, .width = vertical ? width : length / static_cast<double>(slabs), .values = {}};
   const std::size_t bins = bins_in(length, profile.width);
   std::vector<std::vector<double>> terms(bins);
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {

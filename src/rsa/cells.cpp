@@ -6,11 +6,14 @@
 namespace packmpi::rsa {
 namespace {
 
-// About four cells a particle where the layer is thin on particles.
+// About four cells a particle where the layer is thin on particles; they need not be flatter than the layer is thick.
 double cell_width(const scene::Scene& scene, const LayerRegion& region, std::int64_t asked, double diameter) {
-  const double share =
-      scene.box.floor_area() * region.thickness / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
-  return std::max(diameter, scene.box.dimension == 3 ? std::cbrt(share) : std::sqrt(share));
+  const double floor = scene.box.floor_area() / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
+  const double share = floor * region.thickness;
+  const bool deep = scene.box.dimension == 3;
+  double width = deep ? std::cbrt(share) : std::sqrt(share);
+  if (width > region.thickness) width = deep ? std::sqrt(floor) : floor;  // one cell high
+  return std::max(diameter, width);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace packmpi::run {
 Pile::Pile(const comm::Comm& world, const scene::Scene& what)
     : comm(world),
       scene(what),
-      ownership(world, geometry::ColumnGrid(what.box, what.column_width()), what.in.parallel.decomposition),
+      ownership(world, what.columns(), what.in.parallel.decomposition),
       store(what.features.layout()),
       neighborhood(world, what, ownership),
       stepper(world, what) {}

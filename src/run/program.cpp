@@ -36,8 +36,7 @@ void warn_of_step(const scene::Scene& scene) {
 
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
-  const scene::Ownership ownership(comm, geometry::ColumnGrid(scene.box, scene.column_width()),
-                                   scene.in.parallel.decomposition);
+  const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
   if (comm.rank() == 0) {
     const auto [nx, ny] = ownership.grid().counts();
     fmt::print(

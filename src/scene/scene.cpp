@@ -7,6 +7,7 @@
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "geometry/volume.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::scene {
@@ -109,6 +110,16 @@ Features features_of(const input::Input& in) {
   return f;
 }
 
+// Columns beyond four a particle of a layer would mostly be empty: in a wide box they are made wider instead.
+std::int64_t most_columns(const Scene& scene) {
+  constexpr double always = 0x1p16, countable = 0x1p30, a_particle = 4.0;
+  const int power = scene.box.dimension;
+  const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
+  const double particles = scene.in.layers.fraction * scene.box.floor_area() * scene.in.layers.thickness / mean;
+  const double wanted = a_particle * particles;
+  return static_cast<std::int64_t>(wanted < countable ? std::max(wanted, always) : countable);  // NaN: countable
+}
+
 int size_levels(const Sizes& sizes) {
   if (!(sizes.ratio() > alike)) return 1;
   int levels = 1;
@@ -154,6 +165,7 @@ Scene build(const input::Input& in) {
   scene.thaw = choose_thaw(in);
   if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
   check_periodic(in, scene);
+  scene.most_columns = most_columns(scene);
   scene.force_quantum = force_quantum(scene);
   scene.speed_bound = speed_bound(scene);
   return scene;

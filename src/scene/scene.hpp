@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "geometry/box.hpp"
+#include "geometry/columns.hpp"
 #include "input/input.hpp"
 #include "particles/layout.hpp"
 #include "scene/sizes.hpp"
@@ -42,11 +43,14 @@ struct Scene {
   double time_step = 0.0;  ///< [s] of the final stage, and of the layers unless they have their own
   Stage settling;          ///< of the layers
   double thaw = 0.0;       ///< [s] duration of the final stage
-  double force_quantum = 0.0;  ///< [N] a power of two: forces are summed as integers of this unit
-  double speed_bound = 0.0;    ///< [m/s] no particle of a sound run is as fast
+  double force_quantum = 0.0;     ///< [N] a power of two: forces are summed as integers of this unit
+  double speed_bound = 0.0;       ///< [m/s] no particle of a sound run is as fast
+  std::int64_t most_columns = 1;  ///< of the lateral grid: memory for empty ground is bounded (doc/theory.md)
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].
   [[nodiscard]] double column_width() const noexcept { return reach + skin; }
+  /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns.
+  [[nodiscard]] geometry::ColumnGrid columns() const { return {box, column_width(), most_columns}; }
   /// The final stage, once it is hard.
   [[nodiscard]] Stage last() const noexcept { return {time_step, in.particles.youngs_modulus}; }
 };

@@ -79,6 +79,34 @@ TEST(ColumnGrid, ColumnsAreAsManyAsFitTheReach) {
   EXPECT_EQ(ColumnGrid(box3(1.0, 0.5, false, false), 0.1).counts(), (std::array<int, 2>{10, 5}));
 }
 
+TEST(ColumnGrid, AreWiderWhereTheyWouldBeTooMany) {
+  for (const Box& box : boxes()) {  // few enough: nothing changes
+    const ColumnGrid few(box, 1.0, 100);
+    EXPECT_EQ(few.counts(), ColumnGrid(box, 1.0).counts());
+    EXPECT_EQ(few.widths(), ColumnGrid(box, 1.0).widths());
+  }
+  for (const double lx : {1e3, 1e6, 1e12, 1e200}) {
+    for (const double ly : {0.5, 3.1, 7.0, 1e3, 1e6, 1e150}) {
+      for (const bool periodic : {false, true}) {
+        if (periodic && ly < 3.0) continue;  // refused by the scene
+        for (const std::int64_t most : {std::int64_t{9}, std::int64_t{1000}, std::int64_t{1} << 30}) {
+          const ColumnGrid grid(box3(lx, ly, periodic, periodic), 1.0, most);
+          ASSERT_LE(grid.size(), most) << lx << " " << ly << " " << periodic;
+          for (const std::size_t axis : {0u, 1u}) {
+            ASSERT_TRUE(grid.counts()[axis] == 1 || grid.widths()[axis] >= 1.0);
+            ASSERT_GE(grid.counts()[axis], periodic ? 3 : 1);
+          }
+          const bool square = lx == ly && lx * ly > static_cast<double>(most);
+          ASSERT_TRUE(!square || grid.size() > most / 4);  // no wider than they must be
+        }
+      }
+    }
+    const ColumnGrid flat(box2(lx, false), 1.0, 100);
+    EXPECT_LE(flat.size(), 100);
+    EXPECT_GE(flat.size(), 98);
+  }
+}
+
 TEST(ColumnGrid, EveryPositionHasAColumn) {
   const ColumnGrid grid(box3(5.5, 3.2, false, true), 1.0);
   EXPECT_EQ(grid.counts(), (std::array<int, 2>{5, 3}));

@@ -55,7 +55,7 @@ double distance(const geometry::Box& box, const Vec3& a, const Vec3& b) {
 struct World {
   World(const comm::Comm& comm, const input::Input& in, std::size_t count)
       : scene(scene::build(in)),
-        ownership(comm, geometry::ColumnGrid(scene.box, scene.column_width()), in.parallel.decomposition),
+        ownership(comm, scene.columns(), in.parallel.decomposition),
         store(scene.features.layout()),
         hood(comm, scene, ownership),
         balls(cloud(scene, count)) {

@@ -86,6 +86,7 @@ TEST_F(Observe, SurfaceIsTheMeanOfTheColumnMaxima) {
       EXPECT_NEAR(reference, expected, 4e-16 * expected);
       for (const Spread spread : every_spread) {
         EXPECT_EQ(surface_height(comm_, store(grains, scene, spread), scene), reference);
+        EXPECT_EQ(surface_height(comm_, store(grains, scene, spread), scene, 0), reference);  // nothing stored
       }
     }
   }
