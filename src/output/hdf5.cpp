@@ -190,4 +190,8 @@ std::int64_t place_of(hid_t file, const Column& column) {
   return static_cast<std::int64_t>(place);
 }
 
+std::int64_t place_of_rows(const Column& column, std::int64_t place) {
+  return place + static_cast<std::int64_t>(column.slab.offset * hsize_t{row_bytes(column)});
+}
+
 }  // namespace packmpi::output::h5

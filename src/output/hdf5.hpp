@@ -123,6 +123,9 @@ void create_dataset(hid_t file, const Column& column);
 /// Where its rows begin in the file [bytes]; 0 if it has none.
 [[nodiscard]] std::int64_t place_of(hid_t file, const Column& column);
 
+/// Where in the file this rank's rows begin [bytes], for a dataset that begins at `place`.
+[[nodiscard]] std::int64_t place_of_rows(const Column& column, std::int64_t place);
+
 /// A column whose rows are get(rows[k]): a T or an array of T. `rows` must live until the column is written.
 template <class T, class Row, class Get>
 [[nodiscard]] Column make_column(std::string path, std::string unit, const Slab& slab, const std::vector<Row>& rows,

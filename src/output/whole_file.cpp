@@ -67,7 +67,7 @@ std::vector<std::int64_t> write_rows(const std::string& path, const std::vector<
     const auto first = static_cast<std::int64_t>(plan[k].slab.offset);
     const std::vector<std::byte> bytes = plan[k].bytes();
     digests[k] = static_cast<std::int64_t>(rows_digest(bytes, h5::row_bytes(plan[k]), first));
-    disk.write_at(bytes, places[k] + first * static_cast<std::int64_t>(h5::row_bytes(plan[k])));
+    disk.write_at(bytes, h5::place_of_rows(plan[k], places[k]));
   }
   disk.sync();
   disk.close();

@@ -1,5 +1,6 @@
 #include "output/pack.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -9,7 +10,11 @@
 #include <iterator>
 #include <string>
 
+#include "output/files.hpp"
+#include "output/pack_file.hpp"
+#include "output/pack_plan.hpp"
 #include "output/samples.hpp"
+#include "output/scatter.hpp"
 
 namespace packmpi::output {
 namespace {
@@ -260,6 +265,94 @@ TEST_F(Pack, AFlippedBitAnywhereIsRefused) {
     EXPECT_THROW((void)read_pack(damaged_path), Error) << "byte " << at << " of " << whole.size();
     EXPECT_TRUE(is_pack(damaged_path) || at < 65536) << "byte " << at;
   }
+}
+
+TEST_F(Pack, IdsAreSharedOutHoweverManyThereAre) {
+  for (const std::int64_t total : {std::int64_t{1}, (std::int64_t{1} << 31) + 1, (std::int64_t{3} << 31) + 7,
+                                   std::int64_t{1} << 33, (std::int64_t{1} << 40) - 1}) {
+    for (const std::int64_t ranks : {1, 3, 1000, 65537, 1 << 20}) {
+      const IdBlocks blocks{total, ranks};
+      EXPECT_EQ(blocks.begin(0), 0);
+      EXPECT_EQ(blocks.begin(static_cast<Rank>(ranks)), total);
+      for (const std::int64_t r : {std::int64_t{0}, ranks / 3, ranks / 2, ranks - 1}) {
+        const auto rank = static_cast<Rank>(r);
+        const GlobalId begin = blocks.begin(rank), end = blocks.begin(rank + 1);
+        ASSERT_LE(begin, end);
+        ASSERT_LE(end - begin, total / ranks + 1);
+        if (begin == end) continue;
+        ASSERT_EQ(blocks.owner(begin), rank);
+        ASSERT_EQ(blocks.owner(end - 1), rank);
+      }
+    }
+  }
+}
+
+TEST_F(Pack, RowsBeyondTwoToTheThirtyThirdGoToTheirWriters) {
+  struct Row {
+    GlobalId id;
+    std::int64_t from;
+  };
+  const std::int64_t total = (std::int64_t{1} << 33) + 11;
+  const IdBlocks blocks{total, comm_.size()};
+  std::vector<Row> rows;
+  for (int k = 0; k < 100; ++k) rows.push_back({total - 1 - (k * comm_.size() + comm_.rank()) * 40000000, k});
+  rows = scatter(comm_, blocks, std::move(rows), &Row::id);
+  EXPECT_EQ(comm_.sum(std::ssize(rows)), 100 * comm_.size());
+  for (const Row& row : rows) EXPECT_EQ(blocks.owner(row.id), comm_.rank());
+}
+
+// The last rows of a pack of more than 2^31 particles and 3 x 2^31 contacts: a file with a hole in the place of the
+// others. HDF5 finds them where they were put.
+TEST_F(Pack, RowsBeyondTwoToTheThirtyFirstLieWhereTheyShould) {
+  if (comm_.rank() != 0) return;
+  const std::int64_t total = (std::int64_t{1} << 31) + 12345;
+  PackBlock block;
+  block.particles = {static_cast<hsize_t>(total), static_cast<hsize_t>(total - 3), 3};
+  for (GlobalId id = total - 3; id < total; ++id) {
+    const auto x = static_cast<double>(id);
+    block.rows.push_back({id, {x, -x, 0.5}, {1.0, x, 2.0}, {3.0, 4.0, x}, 0.25 * x, 7, static_cast<int>(total - id)});
+  }
+  block.has_contacts = true;
+  block.contacts = {static_cast<hsize_t>(3 * total), static_cast<hsize_t>(3 * total - 1), 1};
+  block.contact_rows.push_back({total - 2, total - 1, 1e-3, {1.0, 2.0, 3.0}});
+  const std::vector<h5::Column> plan = plan_columns(block);
+
+  const std::string path = folder_.file("large.hdf");
+  std::vector<std::int64_t> places;
+  {
+    const h5::Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create");
+    write_frame(file.get(), block, plan, testing::some_record(3, 1));
+    for (const h5::Column& column : plan) places.push_back(h5::place_of(file.get(), column));
+  }
+  {
+    Descriptor disk(path, O_WRONLY);
+    for (std::size_t k = 0; k < plan.size(); ++k) disk.write_at(plan[k].bytes(), h5::place_of_rows(plan[k], places[k]));
+    disk.close();
+  }
+  const PackFile pack(path);
+  ASSERT_EQ(pack.count(), total);
+  const PackRows got = pack.rows(total - 3, 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const ParticleRow& row = block.rows[k];
+    EXPECT_EQ(got.id[k], row.id);
+    EXPECT_EQ(got.position[k], row.position);
+    EXPECT_EQ(got.velocity[k], row.velocity);
+    EXPECT_EQ(got.spin[k], row.spin);
+    EXPECT_EQ(got.radius[k], row.radius);
+    EXPECT_EQ(got.layer[k], row.layer);
+    EXPECT_EQ(got.contacts[k], row.contacts);
+  }
+  const File file(path);
+  const Object pairs(H5Dopen2(file.id, "/contacts/pair", H5P_DEFAULT));
+  const hid_t there = H5Dget_space(pairs.id);
+  const std::array<hsize_t, 2> start{static_cast<hsize_t>(3 * total - 1), 0}, count{1, 2};
+  H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  const hid_t here = H5Screate_simple(2, count.data(), nullptr);
+  std::array<std::int64_t, 2> pair{};
+  EXPECT_GE(H5Dread(pairs.id, H5T_NATIVE_INT64, here, there, H5P_DEFAULT, pair.data()), 0);
+  EXPECT_EQ(pair, (std::array<std::int64_t, 2>{total - 2, total - 1}));
+  H5Sclose(here);
+  H5Sclose(there);
 }
 
 }  // namespace
