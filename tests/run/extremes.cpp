@@ -4,12 +4,20 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <numbers>
+#include <tuple>
 
 #include "input/read.hpp"
+#include "observe/measure.hpp"
+#include "output/pack.hpp"
+#include "rsa/insert.hpp"
 #include "run/make_pack.hpp"
+#include "support/placed_pile.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -41,6 +49,7 @@ damping_ratio = 0.3
 class Extremes : public ::testing::Test {
  protected:
   comm::Comm comm_{MPI_COMM_WORLD};
+  output::PackRows rows_;  // of the last pack
 
   output::RunRecord pack(const Set& set) {
     Options options;
@@ -49,6 +58,7 @@ class Extremes : public ::testing::Test {
     options.force = true;
     options.verbosity = log::Verbosity::quiet;
     output::RunRecord record = make_pack(comm_, scene::build(input::parse(brick, "brick.toml", {set})), options);
+    rows_ = output::read_pack(options.folder + "/brick.hdf");
     comm_.barrier();
     if (comm_.rank() == 0) fs::remove_all(options.folder);
     comm_.barrier();
@@ -74,6 +84,14 @@ class Extremes : public ::testing::Test {
     }
   }
 };
+
+constexpr double brick_mass = 1000.0 * 4.0 / 3.0 * std::numbers::pi * 0.02 * 0.02 * 0.02;  // [kg] of a particle
+
+// Penetration / radius of a particle at rest on the floor: E / (1 - nu^2) 4/3 sqrt(r d) d = m g.
+double resting(double gravity) {
+  const double stiffness = 4.0 / 3.0 * 1e7 / (1.0 - 0.25 * 0.25);
+  return std::pow(brick_mass * gravity / (stiffness * 0.02 * 0.02), 2.0 / 3.0);
+}
 
 TEST_F(Extremes, ModulusOf1e12) {
   const auto record = sound({"particles.youngs_modulus=1e12", "layers.duration=0.02", "layers.velocity=[0, 0, -5]"});
@@ -103,6 +121,89 @@ TEST_F(Extremes, OneParticleRestsOnItsHertzOverlap) {  // and so few that none i
   const auto record = sound({"layers.fraction=1e-5", "layers.duration=2", "drag.coefficient=0.05"});
   EXPECT_EQ(record.particles, 1);
   EXPECT_NEAR(record.floor_force, record.weight, 1e-3 * record.weight);
+  EXPECT_NEAR(record.audit.worst_wall_penetration, resting(5.0), 1e-3 * resting(5.0));
+}
+
+TEST_F(Extremes, AnEmptyLayer) {
+  EXPECT_THAT(refused({"layers.fraction=0"}), HasSubstr("layers.fraction"));
+  EXPECT_THAT(refused({"layers.thickness=0"}), HasSubstr("layers.thickness"));
+  test::Bench bench(comm_, test::small_input(3, 1.0, 0.02));  // nobody is there, on any rank
+  bench.start();
+  bench.step(200);
+  const Pile& pile = bench.pile();
+  const auto contacts =
+      observe::contacts(comm_, pile.store, bench.scene(), pile.neighborhood.pairs(), pile.neighborhood.walls());
+  EXPECT_EQ(contacts.pairs, 0);
+  EXPECT_EQ(contacts.coordination + contacts.mean_overlap + contacts.rattlers, 0.0);
+  EXPECT_EQ(pile.height(), 0.0);
+  EXPECT_EQ(observe::motion(comm_, pile.store, bench.scene()).kinetic_energy, 0.0);
+  EXPECT_EQ(observe::density(comm_, pile.store, bench.scene()).phi, 0.0);
+}
+
+// Two that overlap and fall side by side: mirror images for good, in heights and speeds to the last bit.
+TEST_F(Extremes, TwoParticlesAtTheSameHeight) {
+  test::Bench bench(comm_, test::small_input(3, 1.0, 0.02));
+  bench.place({0.4805, 0.5, 0.03}, 0.02);
+  bench.place({0.5195, 0.5, 0.03}, 0.02);
+  bench.start();
+  for (int k = 0; k < 20; ++k) {
+    bench.step(500);
+    const auto a = bench.state(0), b = bench.state(1);
+    ASSERT_EQ(a.x[2], b.x[2]);
+    ASSERT_EQ(a.v[2], b.v[2]);
+    ASSERT_EQ(a.v[0], -b.v[0]);
+    ASSERT_EQ(a.v[1], 0.0);
+  }
+  EXPECT_LT(bench.state(0).v[0], 0.0);
+}
+
+TEST_F(Extremes, RatiosOfRadiiFromTwoToFifty) {
+  for (const double ratio : {2.0, 5.0, 10.0, 20.0, 50.0}) {
+    const auto record = sound({fmt::format("particles.radius={{ distribution = \"bidisperse\", small = {:.17g}, large "
+                                           "= 0.02, large_share = 0.5, weighting = \"number\" }}",
+                                           0.02 / ratio),
+                               "layers.fraction=0.05", "layers.duration=0.1", "layers.velocity=[0, 0, -1]"});
+    EXPECT_EQ(record.max_radius, 0.02);
+    EXPECT_EQ(record.min_radius, 0.02 / ratio);
+  }
+}
+
+// A million radii wide, and as periodic, flat and high: no memory goes to empty ground.
+TEST_F(Extremes, BoxOfAMillionRadii) {
+  const Set wide{"container.size=[2e4, 2e4, 0.05]", "layers.fraction=1e-11", "layers.duration=2",
+                 "drag.coefficient=0.05"};
+  const auto expect_rest = [&](const output::RunRecord& record) {  // each alone on the floor
+    EXPECT_GT(record.particles, 20);
+    EXPECT_NEAR(record.floor_force, record.weight, 1e-3 * record.weight);
+    EXPECT_NEAR(record.audit.worst_wall_penetration, resting(5.0), 1e-3 * resting(5.0));
+    EXPECT_NEAR(record.height / static_cast<double>(record.particles), 0.04 / (5e5 * 5e5), 1e-3 * 0.04 / (5e5 * 5e5));
+  };
+  expect_rest(sound(wide));
+  Set periodic = wide;
+  periodic.emplace_back("container.boundary=[\"periodic\", \"periodic\"]");
+  expect_rest(sound(periodic));
+  const auto flat = sound({"container.dimension=2", "container.size=[2e4, 0.05]", "container.boundary=[\"wall\"]",
+                           "layers.fraction=1e-5", "layers.duration=0.5"});
+  EXPECT_GT(flat.particles, 20);
+  EXPECT_THAT(refused({"container.size=[3e7, 0.2, 0.05]", "layers.fraction=1e-10"}),
+              HasSubstr("times the smallest radius; beyond 1e+09 positions could not tell overlaps"));
+
+  input::Input in = test::small_input(3, 2e4, 0.02);
+  in.layers.fraction = 1e-14;
+  in.dynamics.time_step = 1e-6;
+  test::Bench bench(comm_, in);  // a pair in each corner of a cube, and in its middle
+  for (const double x : {0.02, 1e4, 2e4 - 0.06}) {
+    for (const double z : {0.02, 1e4, 2e4 - 0.02}) {
+      bench.place({x, x, z}, 0.02);
+      bench.place({x + 0.036, x, z}, 0.02);
+    }
+  }
+  bench.start();
+  bench.step(10);
+  EXPECT_EQ(observe::contacts(comm_, bench.pile().store, bench.scene(), bench.neighborhood().pairs(),
+                              bench.neighborhood().walls())
+                .pairs,
+            9);
 }
 
 TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
@@ -110,11 +211,73 @@ TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
   (void)sound({"contact.damping_ratio=1"});
   (void)sound({"contact.damping_ratio=5"});  // "auto": the limit is lower beyond 1
   EXPECT_THAT(refused({"contact.damping_ratio=5", "dynamics.time_step=1e-3"}), HasSubstr("damping_ratio 5"));
+
+  // Head on at +-1 m/s, twenty times as long as a contact without damping takes. From xi = sqrt(5 / 6) on, balls never
+  // part: speeds v = a x^(5/4) of the overlap x have a real a then.
+  const auto speed_after = [&](double xi) {
+    input::Input in = test::vacuum(3, 1.0, 0.02, 2e-6, 1.0);
+    in.contact.damping_ratio = xi;
+    test::Bench bench(comm_, in);
+    bench.place({0.48, 0.5, 0.5}, 0.02, {1.0, 0.0, 0.0});
+    bench.place({0.52, 0.5, 0.5}, 0.02, {-1.0, 0.0, 0.0});
+    bench.start();
+    bench.step(10000);
+    return bench.state(1).v[0];
+  };
+  EXPECT_NEAR(speed_after(0.0), 1.0, 1e-3);
+  EXPECT_LT(std::abs(speed_after(1.0)), 1e-3);
+  EXPECT_LT(std::abs(speed_after(5.0)), 1e-3);
 }
 
 TEST_F(Extremes, FrictionOfNoneAndTwo) {
   (void)sound({"contact.friction=0"});
   (void)sound({"contact.friction=2"});
+
+  // Without spin a particle slides v^2 / (2 mu g) on the floor, or for ever.
+  const auto slide = [&](double mu, double seconds) {
+    input::Input in = test::small_input(3, 1.0, 0.02);
+    in.particles.youngs_modulus = 1e7;
+    in.jamming.gravity = 5.0;
+    in.contact.wall_friction = mu;
+    in.dynamics.rotation = false;
+    in.dynamics.time_step = 5e-5;
+    test::Bench bench(comm_, in);
+    bench.place({0.2, 0.5, 0.02 * (1.0 - resting(5.0))}, 0.02, {1.0, 0.0, 0.0});
+    bench.start();
+    bench.step(std::llround(seconds / 5e-5));
+    return bench.state(0);
+  };
+  EXPECT_NEAR(slide(0.0, 0.5).x[0], 0.7, 1e-9);
+  EXPECT_EQ(slide(0.0, 0.5).v[0], 1.0);
+  EXPECT_NEAR(slide(2.0, 0.5).x[0] - 0.2, 1.0 / (2.0 * 2.0 * 5.0), 1e-4);
+  EXPECT_LT(std::abs(slide(2.0, 0.5).v[0]), 1e-12);
+}
+
+TEST_F(Extremes, SlipExactlyZero) {  // has no direction
+  for (const Set& law : {Set{"contact.regularisation=stop"}, Set{"contact.regularisation=none"},
+                         Set{"contact.regularisation=viscous", "contact.slip_time=1e-2"}, Set{"dynamics.theta=1"}}) {
+    Set one{"layers.fraction=1e-5", "contact.friction=0.5"};
+    one.insert(one.end(), law.begin(), law.end());
+    (void)sound(one);
+    ASSERT_EQ(rows_.id.size(), 1U);
+    EXPECT_EQ(rows_.velocity[0][0], 0.0) << law[0];
+    EXPECT_EQ(rows_.velocity[0][1], 0.0) << law[0];
+    EXPECT_EQ(rows_.spin[0], Vec3{}) << law[0];
+  }
+  input::Input in = test::small_input(3, 1.0, 0.02);
+  in.contact.friction = 2.0;
+  test::Bench bench(comm_, in);  // one falls upon the top of another
+  bench.place({0.5, 0.5, 0.02}, 0.02);
+  bench.place({0.5, 0.5, 0.0605}, 0.02);
+  bench.start();
+  bench.step(20000);
+  for (const GlobalId id : {0, 1}) {
+    const auto s = bench.state(id);
+    EXPECT_EQ(s.x[0], 0.5);
+    EXPECT_EQ(s.x[1], 0.5);
+    EXPECT_EQ(s.v[0], 0.0);
+    EXPECT_EQ(s.omega, Vec3{});
+  }
 }
 
 TEST_F(Extremes, WithoutGravityNothingSettlesAndLayersEnd) {
@@ -124,6 +287,17 @@ TEST_F(Extremes, WithoutGravityNothingSettlesAndLayersEnd) {
   EXPECT_EQ(record.kinetic_energy, 0.0);
   EXPECT_EQ(record.layers.front().stop_reason, "duration");
   EXPECT_THAT(refused({"jamming.gravity=0"}), HasSubstr("\"auto\" needs gravity or a speed at insertion"));
+}
+
+// The weight goes into the fluid: all sink at m g / c, to the last digits as c dt = m / 2.
+TEST_F(Extremes, DragDominating) {
+  const double dt = 1e-4;
+  const auto drag = [&](double share) { return fmt::format("drag.coefficient={:.17g}", share * brick_mass / dt); };
+  const auto record = sound({drag(0.5), "dynamics.time_step=1e-4", "layers.duration=0.1"});
+  const double speed = 5.0 * dt / 0.5;
+  const double expected = 0.5 * brick_mass * speed * speed * static_cast<double>(record.particles);
+  EXPECT_NEAR(record.kinetic_energy, expected, 1e-9 * expected);
+  EXPECT_THAT(refused({drag(1.01), "dynamics.time_step=1e-4"}), HasSubstr("stops the lightest particle within"));
 }
 
 TEST_F(Extremes, StepsFromATenthToAHundredTimesTheLimit) {
@@ -154,6 +328,91 @@ TEST_F(Extremes, PeriodicAxisOfTheLeastLegalWidth) {
 TEST_F(Extremes, NearFieldBeyondTheRangeOfNumbers) {
   EXPECT_THAT(refused({"near_field.alpha2=1", "near_field.beta2=300", "near_field.cutoff=0.06"}),
               HasSubstr("near_field: the force at a distance of 0.02 m is beyond the range of numbers"));
+}
+
+TEST_F(Extremes, GradedSizesThatCannotFit) {
+  const auto graded = [](const std::string& max) {
+    return "particles.radius={ distribution = \"uniform\", min = 0.01, max = " + max + ", weighting = \"mass\" }";
+  };
+  EXPECT_THAT(refused({graded("0.03")}), HasSubstr("more than container.size[2] = 0.05 m"));
+  EXPECT_THAT(refused({graded("0.02"), "layers.thickness=0.039"}), HasSubstr("is less than the largest particle"));
+  EXPECT_THAT(refused({graded("0.02"), "layers.fraction=0.5", "layers.attempts=200"}), HasSubstr("at size class"));
+  EXPECT_THAT(refused({graded("0.02"), "layers.fraction=0.9"}), HasSubstr("cannot be reached by random insertion"));
+  // Just as high as the layer: all large ones have their centres at one height.
+  (void)sound({graded("0.02"), "layers.thickness=0.04", "layers.fraction=0.1"});
+}
+
+// As many ranks as columns, or one too many.
+TEST_F(Extremes, MoreRanksThanColumns) {
+  const int ranks = comm_.size();
+  const auto across = [](int columns) { return fmt::format("container.size=[{}, 0.05, 0.05]", 0.0421 * columns); };
+  for (const char* kind : {"slab", "pencil", "metis"}) {
+    const std::string decomposition = fmt::format("parallel.decomposition={}", kind);
+    (void)sound({across(std::max(2, ranks)), "layers.fraction=0.05", decomposition});
+    if (ranks < 3) continue;  // a box of one column is narrower than two particles
+    EXPECT_THAT(refused({across(ranks - 1), "layers.fraction=0.05", decomposition}),
+                HasSubstr(fmt::format("use at most {} ranks", ranks - 1)));
+  }
+}
+
+// What is smaller than any number that matters counts as nothing, and -0 as 0: to the bit.
+TEST_F(Extremes, DenormalsAndMinusZero) {
+  (void)sound({});
+  const output::PackRows plain = rows_;
+  (void)sound({"layers.velocity=[-0.0, 4.9e-324, -0.0]", "layers.spin=[-0.0, -0.0, 4.9e-324]",
+               "drag.fluid_velocity=[-0.0, -0.0, -0.0]", "drag.coefficient=4.9e-324"});
+  for (std::size_t k = 0; k < plain.id.size(); ++k) {
+    EXPECT_EQ(rows_.position[k], plain.position[k]);
+    EXPECT_EQ(rows_.velocity[k], plain.velocity[k]);
+    EXPECT_EQ(rows_.spin[k], plain.spin[k]);
+  }
+  for (const char* tiny : {"particles.radius.value", "particles.youngs_modulus", "particles.density",
+                           "layers.thickness", "dynamics.time_step", "layers.duration"}) {
+    for (const char* value : {"4.9e-324", "-0.0"}) (void)refused({fmt::format("{}={}", tiny, value)});
+  }
+}
+
+// The same layer under other names: the same motion, contacts and frozen ones, to the bit.
+TEST_F(Extremes, IdsBeyondTwoToTheThirtyThird) {
+  const scene::Scene scene = scene::build(input::parse(brick, "brick.toml", {{"layers.velocity=[0, 0, -1]"}}));
+  using Motion = std::vector<std::tuple<GlobalId, Vec3, Vec3>>;
+  using Forces = std::vector<std::tuple<GlobalId, GlobalId, Vec3>>;
+  const auto settle = [&](GlobalId base) {
+    Pile pile(comm_, scene);
+    const rsa::LayerRegion region{.layer = 0, .bottom = 0.0, .thickness = 0.2, .first_id = base};
+    const rsa::Insertion got = rsa::insert(comm_, scene, pile.ownership, region, pile.store);
+    pile.neighborhood.rebuild(pile.store);
+    pile.stepper.advance(pile.store, pile.neighborhood, 600);
+    pile.neighborhood.freeze(pile.store, base + got.inserted / 2);
+    pile.neighborhood.rebuild(pile.store);
+    pile.stepper.advance(pile.store, pile.neighborhood, 100);
+    EXPECT_EQ(comm_.sum(std::int64_t{pile.neighborhood.frozen().owned()}), got.inserted / 2);
+    pile.neighborhood.thaw(pile.store);
+    pile.neighborhood.rebuild(pile.store);
+    pile.stepper.advance(pile.store, pile.neighborhood, 100);
+    EXPECT_EQ(observe::soundness(comm_, pile.store, scene).found, got.inserted);
+    const double energy = observe::energy_of(comm_, pile.store, scene, base, base + got.inserted);
+    EXPECT_GT(energy, 0.0);
+    EXPECT_EQ(observe::energy_of(comm_, pile.store, scene, base + got.inserted, base + 2 * got.inserted), 0.0);
+    Motion motion;
+    for (LocalIndex i = 0; i < pile.store.owned(); ++i) {
+      motion.emplace_back(pile.store.ids()[static_cast<std::size_t>(i)] - base, pile.store.position(i),
+                          pile.store.velocity(i));
+    }
+    Forces forces;
+    for (const auto& c : observe::contact_forces(pile.store, scene, pile.neighborhood.pairs())) {
+      EXPECT_LT(c.first, c.second);
+      forces.emplace_back(c.first - base, c.second - base, c.force);
+    }
+    EXPECT_GT(comm_.sum(std::ssize(forces)), 0);
+    std::ranges::sort(motion);
+    std::ranges::sort(forces);
+    return std::tuple(motion, forces, energy);
+  };
+  const auto plain = settle(0);
+  for (const GlobalId base : {(GlobalId{1} << 31) - 5, (GlobalId{1} << 33) - 5, GlobalId{1} << 40}) {
+    EXPECT_EQ(settle(base), plain) << base;
+  }
 }
 
 // A line for scripts: how many rows ended as the page says.
