@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/log.hpp"
@@ -59,7 +60,11 @@ void remove_checkpoints(const Files& files) {
 double expected_particles(const scene::Scene& scene) {
   const double height = scene.box.height() + scene.in.layers.thickness;
   const double solid = (scene.box.dimension == 3 ? densest : 0.91) * scene.box.floor_area() * height;
-  return solid / (geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension));
+  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const input::Layers& layers = scene.in.layers;
+  const double a_layer = layers.fraction * scene.box.floor_area() * layers.thickness / mean + 1.0;
+  const double full = solid / mean;
+  return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;
 }
 
 Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
