@@ -295,7 +295,8 @@ TEST_F(Pack, RowsBeyondTwoToTheThirtyThirdGoToTheirWriters) {
   const std::int64_t total = (std::int64_t{1} << 33) + 11;
   const IdBlocks blocks{total, comm_.size()};
   std::vector<Row> rows;
-  for (int k = 0; k < 100; ++k) rows.push_back({total - 1 - (k * comm_.size() + comm_.rank()) * 40000000, k});
+  for (int k = 0; k < 100; ++k)
+    rows.push_back({total - 1 - (k * comm_.size() + comm_.rank()) * (std::int64_t{80000000} / comm_.size()), k});
   rows = scatter(comm_, blocks, std::move(rows), &Row::id);
   EXPECT_EQ(comm_.sum(std::ssize(rows)), 100 * comm_.size());
   for (const Row& row : rows) EXPECT_EQ(blocks.owner(row.id), comm_.rank());
