@@ -29,7 +29,7 @@ radius = { distribution = "equal", value = 0.02 }
 [layers]
 thickness = 0.1
 fraction = 0.2
-duration = 1.5
+duration = 0.8
 [jamming]
 gravity = 5.0
 [dynamics]
@@ -113,6 +113,13 @@ def to_mpirun(number):
     return lambda process, folder: process.send_signal(number)
 
 
+def term_to_mpirun(process, _folder):
+    """mpirun takes a while to pass it on, and wakes the ranks first: until then they stand still."""
+    for rank in ranks_of(process):
+        os.kill(rank, signal.SIGSTOP)
+    process.send_signal(signal.SIGTERM)
+
+
 def to_one_rank(number):
     return lambda process, folder: os.kill(ranks_of(process)[-1], number)
 
@@ -149,7 +156,7 @@ def main():
     asked = "a signal asked for it"
     told("USR2", to_mpirun(signal.SIGUSR2), 75, asked, whole)
     # mpirun passes TERM on, waits all of its patience, and ends with a code of its own
-    told("TERM", to_mpirun(signal.SIGTERM), None, "", whole, mca=("--mca", "odls_base_sigkill_timeout", "3"))
+    told("TERM", term_to_mpirun, None, "", whole, mca=("--mca", "odls_base_sigkill_timeout", "3"))
     told("TERM to one rank", to_one_rank(signal.SIGTERM), 75, asked, whole)
     told("INT to one rank", to_one_rank(signal.SIGINT), 75, asked, whole)
     told("STOP", stop_file, 75, "the STOP file is there", whole)
