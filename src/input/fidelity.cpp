@@ -27,7 +27,7 @@ struct Softness {
 };
 
 bool is_draft(const Input& in) { return in.fidelity == "draft"; }
-bool graded(const Input& in) { return in.particles.radius.distribution != SizeDistribution::equal; }
+bool is_graded(const Input& in) { return in.particles.radius.distribution != SizeDistribution::equal; }
 
 bool flat(const Input& in) { return in.container.dimension == 2; }
 
@@ -37,7 +37,7 @@ double soft_modulus(const Input& in) {
   constexpr double worth_it = 0.5;
   const double hard = in.particles.youngs_modulus;
   if (!is_draft(in) && !in.dynamics.rotation) return hard;
-  const Softness softness = is_draft(in) && graded(in) && !flat(in) ? Softness{0.03, 1.5e3} : Softness{0.1, 5e3};
+  const Softness softness = is_draft(in) && is_graded(in) && !flat(in) ? Softness{0.03, 1.5e3} : Softness{0.1, 5e3};
   const double stress = in.particles.density * in.jamming.gravity * in.container.size.back();
   const double soft = std::max(softness.share * hard, softness.weight * stress);
   return soft < worth_it * hard ? soft : hard;
@@ -46,7 +46,7 @@ double soft_modulus(const Input& in) {
 /// Both measured and chosen with scripts/tradeoff.py (doc/accuracy.md).
 Protocol draft(const Input& in) {
   if (flat(in)) return {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4};
-  if (graded(in)) return {.duration = 0.65, .speed = 0.75, .window = 4, .thaw = 0.2};
+  if (is_graded(in)) return {.duration = 0.65, .speed = 0.75, .window = 4, .thaw = 0.2};
   return {.duration = 0.8, .speed = 0.75, .window = 4, .thaw = 0.26};
 }
 

@@ -191,9 +191,9 @@ std::vector<std::string> header_lines(const Specimen& s) {
   return lines;
 }
 
-std::string header(const Specimen& s, std::string_view mark) {
+std::string header(const Specimen& s, std::string_view comment_mark) {
   std::string text;
-  for (const std::string& line : header_lines(s)) text += fmt::format("{}{}\n", mark, line);
+  for (const std::string& line : header_lines(s)) text += fmt::format("{}{}\n", comment_mark, line);
   return text;
 }
 

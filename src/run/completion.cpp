@@ -10,7 +10,7 @@ namespace packmpi::run {
 namespace {
 
 // In single quotes of a shell.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out;
   for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out;
@@ -73,13 +73,13 @@ std::string zsh_option(const OptionWords& option) {
   const std::string value = option.value.empty() ? "" : fmt::format(":{}:_files", option.value);
   const std::string names = option.names.size() > 1 ? fmt::format("'*'{{{}}}", joined(option.names, ","))
                                                     : fmt::format("'*'{}", option.names.front());
-  return fmt::format("{}'[{}]{}'", names, quoted(text), value);
+  return fmt::format("{}'[{}]{}'", names, in_quotes(text), value);
 }
 
 std::string zsh() {
   std::string commands, cases;
   for (const CommandWords& c : command_words()) {
-    commands += fmt::format("    '{}:{}'\n", c.name, quoted(c.text));
+    commands += fmt::format("    '{}:{}'\n", c.name, in_quotes(c.text));
     std::vector<std::string> specs{"'--help[print help]'"};
     for (const OptionWords& option : c.options) specs.push_back(zsh_option(option));
     for (const OptionWords& a : c.arguments) {
@@ -110,7 +110,7 @@ std::string fish() {
   const std::string all = command_names();
   for (const CommandWords& c : command_words()) {
     out += fmt::format("complete -c packmpi -n 'not __fish_seen_subcommand_from {}' -a {} -d '{}'\n", all, c.name,
-                       quoted(c.text));
+                       in_quotes(c.text));
     // Without a command the options are those of run.
     const std::string here =
         c.name == "run" ? fmt::format("__fish_seen_subcommand_from run; or not __fish_seen_subcommand_from {}", all)
@@ -121,7 +121,7 @@ std::string fish() {
         names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       }
       out += fmt::format("complete -c packmpi -n '{}'{}{} -d '{}'\n", here, names, option.value.empty() ? "" : " -r",
-                         quoted(option.text));
+                         in_quotes(option.text));
     }
     if (const auto words = choices(c); !words.empty()) {
       out += fmt::format("complete -c packmpi -n '{}' -f -a '{}'\n", here, joined(words, " "));

@@ -23,15 +23,16 @@ std::string path_of(const Options& options, const std::string& name, const char*
   return (fs::path(options.folder) / (name + ending)).string();
 }
 
-bool there(const std::string& path) {
+bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
 }
 
 // What is on the disk when a member is done.
 bool finished(const Options& options, const Member& member) {
-  return there(path_of(options, member.name, ".hdf")) && there(path_of(options, member.name, ".json")) &&
-         !there(path_of(options, member.name, ".ckpt.A.hdf")) && !there(path_of(options, member.name, ".ckpt.B.hdf"));
+  return is_there(path_of(options, member.name, ".hdf")) && is_there(path_of(options, member.name, ".json")) &&
+         !is_there(path_of(options, member.name, ".ckpt.A.hdf")) &&
+         !is_there(path_of(options, member.name, ".ckpt.B.hdf"));
 }
 
 // Before anything is written.
@@ -43,7 +44,7 @@ void check_free(const std::vector<Member>& all, const Options& options) {
   for (const Member& member : all) {
     for (const char* ending : {".hdf", ".json", ".log", ".steps.csv"}) {
       const std::string path = path_of(options, member.name, ending);
-      if (there(path)) {
+      if (is_there(path)) {
         throw Error(ExitCode::bad_input,
                     path + " exists; use --force to replace it, --restart auto to go on, or -o FOLDER");
       }
