@@ -18,7 +18,7 @@ foreach(scene IN LISTS scenes)
     COMMAND ${scene} -q ${short} ${smaller} EXIT 3
     MATCHES "stopped because +layers.maximum" FILES ${name}.hdf ${name}.json ${name}.log ${name}.steps.csv)
 endforeach()
-foreach(ranks 1 2)
+foreach(ranks 2)
   add_test(NAME system/exit_codes.np${ranks} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/exit_codes.sh ${input}
     ${CMAKE_CURRENT_BINARY_DIR}/exit_codes.np${ranks}
     ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:packmpi_program>)
@@ -26,7 +26,7 @@ foreach(ranks 1 2)
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS "system;np${ranks}")
 endforeach()
 if(PACKMPI_SYSTEM_PYTHON AND NOT PACKMPI_SANITIZE)   # the short version of scripts/faults.py
-  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 2
+  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 1
     --build ${PROJECT_BINARY_DIR})
   set_tests_properties(system/faults PROPERTIES PROCESSORS 2 TIMEOUT 240 SKIP_RETURN_CODE 77
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS system)
