@@ -29,7 +29,7 @@ radius = { distribution = "equal", value = 0.02 }
 [layers]
 thickness = 0.1
 fraction = 0.2
-duration = 0.8
+duration = 1.5
 [jamming]
 gravity = 5.0
 [dynamics]
@@ -113,11 +113,27 @@ def to_mpirun(number):
     return lambda process, folder: process.send_signal(number)
 
 
+def status(rank, key):
+    return next(line.split()[1] for line in Path(f"/proc/{rank}/status").read_text().splitlines() if line.startswith(key))
+
+
 def term_to_mpirun(process, _folder):
-    """mpirun takes a while to pass it on, and wakes the ranks first: until then they stand still."""
-    for rank in ranks_of(process):
-        os.kill(rank, signal.SIGSTOP)
+    """mpirun wakes the ranks, sleeps for its patience, then passes TERM on: they stand still until it is there."""
+    def stop(ranks):
+        for rank in ranks:
+            os.kill(rank, signal.SIGSTOP)
+        until(lambda: all(status(rank, "State") == "T" for rank in ranks), "the ranks to stand still")
+
+    def has_term(rank):
+        return int(status(rank, "ShdPnd"), 16) >> (signal.SIGTERM - 1) & 1
+
+    stop(ranks := ranks_of(process))
     process.send_signal(signal.SIGTERM)
+    until(lambda: all(status(rank, "State") != "T" for rank in ranks), "mpirun to wake them")
+    stop(ranks)
+    until(lambda: all(has_term(rank) for rank in ranks), "TERM")
+    for rank in ranks:
+        os.kill(rank, signal.SIGCONT)
 
 
 def to_one_rank(number):
@@ -155,7 +171,7 @@ def main():
 
     asked = "a signal asked for it"
     told("USR2", to_mpirun(signal.SIGUSR2), 75, asked, whole)
-    # mpirun passes TERM on, waits all of its patience, and ends with a code of its own
+    # mpirun waits all of its patience after TERM, too, and ends with a code of its own
     told("TERM", term_to_mpirun, None, "", whole, mca=("--mca", "odls_base_sigkill_timeout", "3"))
     told("TERM to one rank", to_one_rank(signal.SIGTERM), 75, asked, whole)
     told("INT to one rank", to_one_rank(signal.SIGINT), 75, asked, whole)
