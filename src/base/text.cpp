@@ -69,4 +69,10 @@ std::string bytes(std::uint64_t count) {
   return fmt::format("{:.1f} {}", value, units[unit]);
 }
 
+std::string_view trimmed(std::string_view text) noexcept {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
 }  // namespace packmpi::text

@@ -23,4 +23,7 @@ namespace packmpi::text {
 /// "512 B", "1.5 KiB", "2.0 GiB": powers of 1024.
 [[nodiscard]] std::string bytes(std::uint64_t count);
 
+/// `text` without the blanks and tabs at its ends; a part of it, not a copy.
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+
 }  // namespace packmpi::text

@@ -10,4 +10,6 @@ using GlobalId = std::int64_t;       ///< a particle's name for life: 0 .. N-1 i
 using Rank = int;                    ///< as MPI has it
 using Vec3 = std::array<double, 3>;  ///< x, y, z; in 2D z = 0 and y is vertical
 
+[[nodiscard]] constexpr double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
 }  // namespace packmpi

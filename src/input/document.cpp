@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "input/units.hpp"
 
 namespace packmpi::input {
@@ -87,16 +88,10 @@ Entry* find_entry(Table& table, std::string_view name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// Takes the part of `path` before the next dot off its front.
 std::string_view next_name(std::string_view& path) {
   const std::size_t dot = std::min(path.find('.'), path.size());
-  const std::string_view name = trimmed(path.substr(0, dot));
+  const std::string_view name = text::trimmed(path.substr(0, dot));
   path.remove_prefix(std::min(dot + 1, path.size()));
   return name;
 }
@@ -117,7 +112,7 @@ void Document::set(const std::string& assignment) {
   const bool prints = std::ranges::none_of(assignment, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   const std::string place = "--set " + (prints ? assignment : toml_string(assignment));
   const std::size_t equals = assignment.find('=');
-  std::string_view path = trimmed(std::string_view(assignment).substr(0, equals));
+  std::string_view path = text::trimmed(std::string_view(assignment).substr(0, equals));
   if (equals == std::string::npos || path.empty() || path.ends_with('.')) {
     throw Error(ExitCode::bad_input, place + ": not an assignment; write --set key.path=value");
   }
@@ -129,7 +124,7 @@ void Document::set(const std::string& assignment) {
     Entry* entry = find_entry(table, name);
     node = entry != nullptr ? &entry->node : &table.emplace_back(Entry{name, {place, Table{}}}).node;
   }
-  *node = parse_value(std::string(trimmed(std::string_view(assignment).substr(equals + 1))), place);
+  *node = parse_value(std::string(text::trimmed(std::string_view(assignment).substr(equals + 1))), place);
 }
 
 const Node* Document::find(std::string_view path) const {

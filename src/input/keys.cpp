@@ -316,4 +316,10 @@ const std::vector<Key>& keys() {
   return table;
 }
 
+std::pair<std::string_view, std::string_view> split_path(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string_view::npos) return {"", path};
+  return {path.substr(0, dot), path.substr(dot + 1)};
+}
+
 }  // namespace packmpi::input

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -61,6 +62,9 @@ struct Key {
 
 /// The table, in the order of reading: a key stands after those that its condition, count and default look at.
 [[nodiscard]] const std::vector<Key>& keys();
+
+/// "a.b.c" into "a.b" and "c"; a path without a table has an empty one.
+[[nodiscard]] std::pair<std::string_view, std::string_view> split_path(std::string_view path);
 
 /// The key at `path`, or null.
 [[nodiscard]] const Key* find_key(std::string_view path);

@@ -19,13 +19,6 @@
 namespace packmpi::input {
 namespace {
 
-/// "a.b.c" into "a.b" and "c".
-std::pair<std::string_view, std::string_view> split(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string_view::npos) return {"", path};
-  return {path.substr(0, dot), path.substr(dot + 1)};
-}
-
 /// The names that may stand directly in `table`: keys and tables, in the key table's order.
 std::vector<std::string> names_in(std::string_view table) {
   const std::string prefix = table.empty() ? "" : std::string(table) + ".";
@@ -48,7 +41,7 @@ std::string suggestion(const std::string& table, const std::string& name) {
   const std::vector<std::string> siblings = names_in(table);
   if (const auto near = text::closest(name, siblings)) return fmt::format("did you mean \"{}\"?", *near);
   for (const Key& key : keys()) {
-    const auto [home, last] = split(key.path);
+    const auto [home, last] = split_path(key.path);
     if (last == name)
       return home.empty() ? fmt::format("\"{}\" belongs above all tables", name)
                           : fmt::format("\"{}\" belongs into [{}]", name, home);
@@ -118,7 +111,7 @@ std::string effective(Input in) {
   std::string text, open;
   for (const Key& key : keys()) {
     if (!key.applies(in)) continue;
-    const auto [table, name] = split(key.path);
+    const auto [table, name] = split_path(key.path);
     if (table != open) text += fmt::format("\n[{}]\n", table);
     open = table;
     text += fmt::format("{} = {}\n", name, written(key, in));

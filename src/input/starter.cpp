@@ -41,12 +41,6 @@ std::string comment(std::string_view text) {
   return out + line + "\n";
 }
 
-// The last name of a path, and what is before it.
-std::array<std::string_view, 2> split(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return {dot == std::string_view::npos ? "" : path.substr(0, dot), path.substr(dot + 1)};
-}
-
 bool at_default(const Key& key, Input& in) {
   if (!key.standard) return false;
   Input other = in;
@@ -59,7 +53,7 @@ bool by_preset(const Key& key, const Input& in) {
 }
 
 std::string lines(const Key& key, Input& in) {
-  const std::string_view name = split(key.path)[1];
+  const std::string_view name = split_path(key.path).second;
   std::string text = comment(fmt::format("{} ({})", key.doc, wanted(key)));
   if (!key.applies(in)) return text + fmt::format("# {} = ...   # only if {}\n", name, key.when.words);
   if (by_preset(key, in)) return text + fmt::format("# {} = {}   # by fidelity\n", name, written(key, in));
@@ -76,7 +70,7 @@ std::string starter(int dimension) {
       "# it with: mpirun -n 4 packmpi FILE\n\n";
   std::string_view open;
   for (const Key& key : keys()) {
-    const std::string_view table = split(key.path)[0];
+    const std::string_view table = split_path(key.path).first;
     if (table != open) {  // a table that is there only if it is named stays away
       const bool absent = !in.near_field && table == "near_field";
       text += fmt::format("\n{}[{}]\n", absent ? "# " : "", table);

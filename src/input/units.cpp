@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "base/text.hpp"
 #include "input/document.hpp"
 
 namespace packmpi::input {
@@ -21,12 +22,6 @@ constexpr Unit velocities[] = {{"m/s", 0}, {"cm/s", -2}, {"mm/s", -3}};
 constexpr Unit accelerations[] = {{"m/s2", 0}, {"cm/s2", -2}, {"mm/s2", -3}};
 constexpr Unit angular_velocities[] = {{"rad/s", 0}};
 constexpr Unit drag_factors[] = {{"N s/m", 0}, {"mN s/m", -3}, {"kg/s", 0}, {"g/s", -3}};
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 /// Where the decimal number at the start of `text` ends: its digits, and its exponent if there is one.
 struct Decimal {
@@ -76,14 +71,14 @@ const Quantity angular_velocity{"rad/s", "3 rad/s", angular_velocities};
 const Quantity drag_factor{"N s/m", "5 g/s", drag_factors};
 
 Scalar parse_scalar(std::string_view text, const Quantity& quantity) {
-  text = trimmed(text);
+  text = text::trimmed(text);
   if (quantity.units.empty()) return {{}, "is text where a plain number belongs; write it without quotes and unit"};
   const auto decimal = scan_decimal(text);
   if (!decimal) {
     return {{},
             fmt::format("does not begin with a number; write a number and a unit, such as \"{}\"", quantity.example)};
   }
-  const std::string_view unit = trimmed(text.substr(decimal->end));
+  const std::string_view unit = text::trimmed(text.substr(decimal->end));
   for (const Unit& known : quantity.units) {
     if (known.name != unit) continue;
     const std::string in_si = fmt::format("{}e{}", text.substr(0, decimal->digits), decimal->exponent + known.exponent);

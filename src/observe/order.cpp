@@ -10,8 +10,6 @@ namespace {
 
 constexpr double first_shell = 1.2071067811865475;  // (1 + sqrt 2) / 2
 
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // From i to each of its neighbours [m].
 std::vector<Vec3> bonds(const Specimen& pack, LocalIndex i, std::span<const LocalIndex> neighbours) {
   std::vector<Vec3> d;

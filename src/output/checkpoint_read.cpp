@@ -15,20 +15,17 @@
 namespace packmpi::output {
 namespace {
 
-[[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
+[[noreturn]] void refuse_checkpoint(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
 
 template <class T>
 T read_attribute(hid_t file, const char* name) {
   const h5::Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, fmt::format("open the attribute {}", name));
   const h5::Handle space(H5Aget_space(attribute.get()), H5Sclose, "ask for a data space");
-  if (H5Sget_simple_extent_npoints(space.get()) != 1) refuse(fmt::format("the attribute {} is no single number", name));
+  if (H5Sget_simple_extent_npoints(space.get()) != 1)
+    refuse_checkpoint(fmt::format("the attribute {} is no single number", name));
   T value{};
   h5::check(H5Aread(attribute.get(), h5::type_of<T>(), &value), fmt::format("read the attribute {}", name));
   return value;
-}
-
-h5::Handle open_dataset(hid_t file, const std::string& path) {
-  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path};
 }
 
 void expect_shape(const h5::Handle& dataset, const std::string& path, const std::vector<hsize_t>& expected) {
@@ -39,15 +36,15 @@ void expect_shape(const h5::Handle& dataset, const std::string& path, const std:
     h5::check(H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr), "ask for an extent");
     if (sizes == expected) return;
   }
-  refuse(fmt::format("{} has another shape than it should", path));
+  refuse_checkpoint(fmt::format("{} has another shape than it should", path));
 }
 
 std::string read_bytes(hid_t file, const std::string& path) {
   constexpr hssize_t longest = hssize_t{1} << 30;
-  const h5::Handle dataset = open_dataset(file, path);
+  const h5::Handle dataset = h5::open_dataset(file, path);
   const h5::Handle space(H5Dget_space(dataset.get()), H5Sclose, "ask for a data space");
   const hssize_t size = H5Sget_simple_extent_npoints(space.get());
-  if (size < 0 || size > longest) refuse(fmt::format("{} is too long", path));
+  if (size < 0 || size > longest) refuse_checkpoint(fmt::format("{} is too long", path));
   std::string text(static_cast<std::size_t>(size), '\0');
   if (size > 0) {
     h5::check(H5Dread(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "read " + path);
@@ -56,14 +53,14 @@ std::string read_bytes(hid_t file, const std::string& path) {
 }
 
 h5::Handle open_file(const std::string& path) {
-  if (!std::filesystem::exists(path)) refuse("there is no such file");
+  if (!std::filesystem::exists(path)) refuse_checkpoint("there is no such file");
   (void)check_frame(path);  // the particles are held to their own digest
   h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it");
   if (H5Aexists(file.get(), "format_version") <= 0 || H5Aexists(file.get(), "text_digest") <= 0) {
-    refuse("it is not a checkpoint of packmpi");
+    refuse_checkpoint("it is not a checkpoint of packmpi");
   }
   const auto version = read_attribute<std::int64_t>(file.get(), "format_version");
-  if (version != checkpoint_version) refuse(fmt::format("format version {} is not known here", version));
+  if (version != checkpoint_version) refuse_checkpoint(fmt::format("format version {} is not known here", version));
   return file;
 }
 
@@ -71,14 +68,14 @@ RunState state_in(hid_t file) {
   const std::string text = read_bytes(file, "/state");
   const std::string scene = read_bytes(file, "/effective_input");
   if (hash_of(text + scene) != read_attribute<std::uint64_t>(file, "text_digest")) {
-    refuse("the digest of its state and scene is wrong: the file is damaged");
+    refuse_checkpoint("the digest of its state and scene is wrong: the file is damaged");
   }
   RunState state = state_of(text);
   state.effective_input = scene;
   const bool sound = state.count >= 0 && state.steps >= 0 && state.done >= 0 && state.dimension >= 2 &&
                      state.dimension <= 3 && std::ranges::is_sorted(state.first_ids) &&
                      state.first_ids.size() == state.layers.size() + (state.phase == Phase::settling ? 1 : 0);
-  if (!sound) refuse("its state contradicts itself");
+  if (!sound) refuse_checkpoint("its state contradicts itself");
   return state;
 }
 
@@ -89,7 +86,7 @@ std::vector<T> read_rows(hid_t file, const std::string& path, GlobalId total, Gl
   const auto wide = static_cast<hsize_t>(width);
   std::vector<hsize_t> sizes{static_cast<hsize_t>(total)};
   if (wide > 1) sizes.push_back(wide);
-  const h5::Handle dataset = open_dataset(file, path);
+  const h5::Handle dataset = h5::open_dataset(file, path);
   expect_shape(dataset, path, sizes);
   std::vector<T> values(count * wide);
   if (count == 0) return values;
@@ -160,7 +157,7 @@ RunState read_checkpoint(const comm::Comm& comm, const std::string& path, partic
       state = state_in(file.get());
       expected = read_attribute<std::uint64_t>(file.get(), "particle_digest");
       if (state.dimension != store.layout().dimension || state.rotation != store.layout().rotation) {
-        refuse("it is of another dimension, or with and without rotation");
+        refuse_checkpoint("it is of another dimension, or with and without rotation");
       }
       const IdBlocks blocks{state.count, comm.size()};
       read_particles(file.get(), state.count, blocks.begin(comm.rank()), blocks.begin(comm.rank() + 1), store);

@@ -18,7 +18,7 @@
 namespace packmpi::output {
 namespace {
 
-[[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_input, words); }
+[[noreturn]] void refuse_request(const std::string& words) { throw Error(ExitCode::bad_input, words); }
 
 const Format& format_of(const std::string& name) {
   std::vector<std::string> names;
@@ -29,8 +29,8 @@ const Format& format_of(const std::string& name) {
     list += (list.empty() ? "" : ", ") + names.back();
   }
   const auto near = text::closest(name, names);
-  refuse(fmt::format("--to {}: no such format{}; there are {}", name,
-                     near ? fmt::format(" (did you mean {}?)", *near) : "", list));
+  refuse_request(fmt::format("--to {}: no such format{}; there are {}", name,
+                             near ? fmt::format(" (did you mean {}?)", *near) : "", list));
 }
 
 /// The request with its file named, and the companion's path ("" if the format has none).
@@ -48,8 +48,8 @@ Names name_files(ConvertRequest request, const FormatWords& words) {
   if (*words.companion == '\0') return {request, ""};
   const std::string companion = std::filesystem::path(request.file).replace_extension(words.companion).string();
   if (companion == request.file) {
-    refuse(fmt::format("-o {}: this name is that of the second file of {}; choose another ending", request.file,
-                       words.name));
+    refuse_request(fmt::format("-o {}: this name is that of the second file of {}; choose another ending", request.file,
+                               words.name));
   }
   return {request, companion};
 }
@@ -58,20 +58,21 @@ void check_free(const Names& names) {
   for (const std::string& path : {names.request.file, names.companion}) {
     std::error_code ignored;
     if (path.empty() || !std::filesystem::exists(path, ignored)) continue;
-    if (std::filesystem::is_directory(path, ignored)) refuse(path + " is a folder; -o wants the name of a file");
-    if (std::filesystem::equivalent(path, names.request.pack, ignored)) refuse(path + " is the pack itself");
-    if (!names.request.force) refuse(path + " exists; use --force to replace it, or -o FILE");
+    if (std::filesystem::is_directory(path, ignored))
+      refuse_request(path + " is a folder; -o wants the name of a file");
+    if (std::filesystem::equivalent(path, names.request.pack, ignored)) refuse_request(path + " is the pack itself");
+    if (!names.request.force) refuse_request(path + " exists; use --force to replace it, or -o FILE");
   }
 }
 
 void check_copies(const ConvertRequest& request, const geometry::Box& box) {
   for (int axis = 0; axis < 2; ++axis) {
     const int n = request.copies[static_cast<std::size_t>(axis)];
-    if (n < 1) refuse("--replicate: the numbers of copies must be 1 or more");
+    if (n < 1) refuse_request("--replicate: the numbers of copies must be 1 or more");
     if (n == 1) continue;
-    if (axis >= box.lateral_axes()) refuse("--replicate: a 2D pack has no second lateral axis; use NX or NX,1");
+    if (axis >= box.lateral_axes()) refuse_request("--replicate: a 2D pack has no second lateral axis; use NX or NX,1");
     if (!box.periodic[static_cast<std::size_t>(axis)]) {
-      refuse(
+      refuse_request(
           fmt::format("--replicate: {} ends in walls, so copies would not fit together there; only periodic axes can "
                       "be replicated",
                       "xy"[axis]));

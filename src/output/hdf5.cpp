@@ -133,6 +133,10 @@ Handle create_group(hid_t file, const std::string& path) {
   return {H5Gcreate2(file, path.c_str(), H5P_DEFAULT, create.get(), H5P_DEFAULT), H5Gclose, "create " + path};
 }
 
+Handle open_dataset(hid_t file, const std::string& path) {
+  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path};
+}
+
 void set_attribute(hid_t object, const char* name, const Value& value) {
   std::visit([&](const auto& v) { set_one(object, name, v); }, value);
 }

@@ -88,6 +88,7 @@ inline constexpr std::size_t row_width<T, std::array<T, n>> = n;
 /// that it can always be closed. (A file that cannot ends the program at its exit: HDF5 1.10 closes it once more.)
 [[nodiscard]] Handle create_file(const std::string& path, const MemoryFile& memory);
 [[nodiscard]] Handle create_group(hid_t file, const std::string& path);
+[[nodiscard]] Handle open_dataset(hid_t file, const std::string& path);
 void set_attribute(hid_t object, const char* name, const Value& value);
 /// Words as a fixed-length ASCII string without padding, as VTK wants its own; not empty.
 void set_fixed_attribute(hid_t object, const char* name, const std::string& words);

@@ -17,10 +17,6 @@ std::vector<hsize_t> extent(hid_t dataset) {
   return sizes;
 }
 
-h5::Handle open_dataset(hid_t file, const std::string& path) {
-  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path};
-}
-
 h5::Handle open_attribute(hid_t file, const char* object, const char* name) {
   return {H5Aopen_by_name(file, object, name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
           fmt::format("open the attribute {} of {}", name, object)};
@@ -49,7 +45,7 @@ struct Range {
 template <class T, class Row>
 std::vector<Row> read_rows(hid_t file, const std::string& path, const Range& range) {
   constexpr hsize_t width = h5::row_width<T, Row>;
-  const h5::Handle dataset = open_dataset(file, path);
+  const h5::Handle dataset = h5::open_dataset(file, path);
   std::vector<hsize_t> expected{static_cast<hsize_t>(range.total)};
   if (width > 1) expected.push_back(width);
   if (extent(dataset.get()) != expected) {
@@ -78,7 +74,7 @@ PackFile::PackFile(const std::string& path)
     throw Error(ExitCode::io_failure, fmt::format("format version {} is not known here", version));
   }
   dimension_ = static_cast<int>(read_number<std::int64_t>(file_.get(), "/summary", "dimension"));
-  const std::vector<hsize_t> sizes = extent(open_dataset(file_.get(), "/particles/id").get());
+  const std::vector<hsize_t> sizes = extent(h5::open_dataset(file_.get(), "/particles/id").get());
   if (sizes.size() == 1) count_ = static_cast<std::int64_t>(sizes[0]);  // any other shape is refused by the read
   rotation_ = H5Lexists(file_.get(), "/particles/spin", H5P_DEFAULT) > 0;
 }

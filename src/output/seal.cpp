@@ -38,21 +38,22 @@ constexpr std::uint64_t stir(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-[[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::io_failure, words); }
+[[noreturn]] void refuse_seal(const std::string& words) { throw Error(ExitCode::io_failure, words); }
 
 [[noreturn]] void refuse_seal() {
-  refuse("there is no sound seal at its end: it is cut off, damaged, not a file of packmpi, or of another version");
+  refuse_seal(
+      "there is no sound seal at its end: it is cut off, damaged, not a file of packmpi, or of another version");
 }
 
 [[noreturn]] void refuse_contents() {
-  refuse("it is not what was written: the file is damaged, or was changed by another program");
+  refuse_seal("it is not what was written: the file is damaged, or was changed by another program");
 }
 
 /// The file as numbers of bytes; what cannot be read is not there.
 class Bytes {
  public:
   explicit Bytes(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
-    if (!file_) refuse("it cannot be opened");
+    if (!file_) refuse_seal("it cannot be opened");
     size_ = static_cast<std::int64_t>(file_.tellg());
   }
   [[nodiscard]] std::int64_t size() const { return size_; }
@@ -60,7 +61,7 @@ class Bytes {
     std::string bytes(static_cast<std::size_t>(size), '\0');
     file_.seekg(begin);
     file_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!file_) refuse("it cannot be read to its end");
+    if (!file_) refuse_seal("it cannot be read to its end");
     return bytes;
   }
 

@@ -13,12 +13,12 @@ namespace packmpi::run {
 namespace {
 
 constexpr double range_in_diameters = 2.5;
-constexpr double least_in_largest = 1.25;  // largest diameters: the first shell of the largest ones
+constexpr double shell_in_largest = 1.25;  // largest diameters: the first shell of the largest ones
 
 // The scene with near pairs out to the analysis' range: a near field that is never evaluated.
 scene::Scene reaching_scene(const std::string& text, const std::string& path, double& range) {
   scene::Scene scene = scene::build(input::parse(text, path, {}));
-  range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), least_in_largest * 2.0 * scene.sizes.largest());
+  range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), shell_in_largest * 2.0 * scene.sizes.largest());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
     // A periodic axis takes three interaction ranges.
     if (scene.box.periodic[axis]) range = std::min(range, scene.box.size[axis] / 3.001 - scene.skin);

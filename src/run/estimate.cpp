@@ -144,7 +144,7 @@ scene::Scene solved(const comm::Comm& comm, const Options& options, Unknown& unk
 }
 
 // Ranks the decomposition has columns for, and the share of copies a rank of `ranks` holds beside its own particles.
-int most_ranks(const scene::Scene& scene) {
+int ranks_at_most(const scene::Scene& scene) {
   const auto [nx, ny] = geometry::ColumnGrid(scene.box, scene.column_width()).counts();
   const bool slab = scene.in.parallel.decomposition == input::Decomposition::slab;
   if (slab && scene.box.dimension == 3) return scene.box.size[1] > scene.box.size[0] ? ny : nx;
@@ -249,7 +249,7 @@ void add_steps(const scene::Scene& scene, output::Estimate& e) {
 
 void add_ranks(const scene::Scene& scene, int ranks, output::Estimate& e) {
   e.ranks = ranks;
-  e.most_ranks = most_ranks(scene);
+  e.most_ranks = ranks_at_most(scene);
   if (e.ranks > e.most_ranks) {
     refuse(fmt::format("--ranks {}: the columns of this scene are enough for {} ranks", e.ranks, e.most_ranks));
   }

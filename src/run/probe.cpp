@@ -15,7 +15,7 @@ namespace {
 constexpr int probe_layers = 3;               // so that most particles have others above and below
 constexpr double particles_wanted = 900.0;    // in a layer: small enough to settle within the time
 constexpr double least_in_columns = 4.0;      // a periodic axis takes three
-constexpr double least_in_largest = 2.0;      // thickness, in largest diameters
+constexpr double thickness_in_largest = 2.0;  // thickness, in largest diameters
 constexpr std::int64_t explicit_steps = 100;  // between looks at the clock
 constexpr std::int64_t implicit_steps = 2;
 
@@ -32,7 +32,7 @@ scene::Scene small_scene(const scene::Scene& scene) {
     area_left *= in.container.size[axis] / side;
     in.container.size[axis] = side;
   }
-  const double least = std::min(in.layers.thickness, least_in_largest * 2.0 * scene.sizes.largest());
+  const double least = std::min(in.layers.thickness, thickness_in_largest * 2.0 * scene.sizes.largest());
   in.layers.thickness = std::clamp(area_left * in.layers.thickness, least, in.layers.thickness);
   return scene::build(in);
 }

@@ -64,4 +64,11 @@ TEST(Timer, StopwatchRuns) {
 }
 
 }  // namespace
+TEST(Trimmed, OfBlanksAndTabsAtItsEnds) {
+  EXPECT_EQ(text::trimmed(" \ta b\t "), "a b");
+  EXPECT_EQ(text::trimmed("a"), "a");
+  EXPECT_EQ(text::trimmed(" \t"), "");
+  EXPECT_EQ(text::trimmed(""), "");
+}
+
 }  // namespace packmpi
