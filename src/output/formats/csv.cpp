@@ -5,9 +5,9 @@
 
 #include "output/formats/document.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::csv {
 
-Document csv_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back(
       {header(s, "# ") + "id,x,y,z,radius,vx,vy,vz,wx,wy,wz,layer,contacts\n", [](Text& out, const Outgoing& p) {
@@ -21,4 +21,4 @@ Document csv_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::csv

@@ -35,15 +35,35 @@ void append_raw(Text& out, const T& value) {
 }
 
 // The writers, by format; in files of their own.
-[[nodiscard]] Document lammps_document(const Specimen& specimen);
-[[nodiscard]] Document liggghts_document(const Specimen& specimen);
-[[nodiscard]] Document yade_document(const Specimen& specimen);
-[[nodiscard]] Document esys_document(const Specimen& specimen);
-[[nodiscard]] Document mercurydpm_document(const Specimen& specimen);
-[[nodiscard]] Document lethe_document(const Specimen& specimen);
-[[nodiscard]] Document pfc_document(const Specimen& specimen);
-[[nodiscard]] Document xyz_document(const Specimen& specimen);
-[[nodiscard]] Document csv_document(const Specimen& specimen);
-[[nodiscard]] Document vtk_document(const Specimen& specimen);
+namespace lammps {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace liggghts {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace yade {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace esys {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace mercurydpm {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace lethe {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace pfc {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace xyz {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace csv {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
+namespace vtk {
+[[nodiscard]] Document make(const Specimen& specimen);
+}
 
 }  // namespace packmpi::output

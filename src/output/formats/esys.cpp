@@ -4,7 +4,7 @@
 #include "output/formats/document.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::esys {
 namespace {
 
 /// Six lines, then the number of particles: YADE's reader looks for it there.
@@ -32,7 +32,7 @@ std::string note(const Specimen& s) {
 
 }  // namespace
 
-Document esys_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back({head(s), [](Text& out, const Outgoing& p) {
                                  const Vec3& x = p.row.position;
@@ -45,4 +45,4 @@ Document esys_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::esys

@@ -4,7 +4,7 @@
 #include "output/formats/lammps_family.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::lammps {
 namespace {
 
 /// "hertz/material ...", for pairs or walls. A wall's modulus counts twice in LAMMPS: as the particle's and as its own.
@@ -83,7 +83,7 @@ std::string in_file(const Specimen& s) {
 
 }  // namespace
 
-Document lammps_document(const Specimen& s) {
+Document make(const Specimen& s) {
   const double density = s.scene.in.particles.density;
   Document document;
   document.sections.push_back({data_head(s, "LAMMPS", 1, "Atoms  # sphere"),
@@ -93,4 +93,4 @@ Document lammps_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::lammps

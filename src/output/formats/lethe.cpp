@@ -7,7 +7,7 @@
 #include "output/formats/document.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::lethe {
 namespace {
 
 std::string properties(const Specimen& s) {
@@ -79,7 +79,7 @@ std::string parameters(const Specimen& s) {
 
 }  // namespace
 
-Document lethe_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back(
       {"p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters; fem_force_x; fem_force_y; fem_force_z; fem_torque_x; "
@@ -95,4 +95,4 @@ Document lethe_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::lethe

@@ -4,7 +4,7 @@
 #include "output/formats/lammps_family.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::liggghts {
 namespace {
 
 constexpr double rigid_factor = 1e5;        // a wall so much stiffer than the particles is rigid to five digits
@@ -88,7 +88,7 @@ std::string in_file(const Specimen& s) {
 
 }  // namespace
 
-Document liggghts_document(const Specimen& s) {
+Document make(const Specimen& s) {
   const double density = s.scene.in.particles.density;
   const bool flat = s.flat();  // its particles are then discs of unit thickness; ours are spheres in a plane
   Document document;
@@ -100,4 +100,4 @@ Document liggghts_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::liggghts

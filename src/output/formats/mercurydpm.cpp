@@ -6,7 +6,7 @@
 #include "output/formats/document.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::mercurydpm {
 namespace {
 
 std::string head(const Specimen& s) {
@@ -95,11 +95,11 @@ std::string driver(const Specimen& s) {
 
 }  // namespace
 
-Document mercurydpm_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back({head(s), s.flat() ? row_2d : row_3d});
   document.companion = driver(s);
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::mercurydpm

@@ -4,7 +4,7 @@
 #include "output/formats/document.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::pfc {
 namespace {
 
 /// PFC wants radii below a quarter of the smallest extent: axes without period are as wide as that takes.
@@ -86,7 +86,7 @@ void ball_2d(Text& out, const Outgoing& p) {
 
 }  // namespace
 
-Document pfc_document(const Specimen& s) {
+Document make(const Specimen& s) {
   const double density = s.scene.in.particles.density;
   Document document;
   document.sections.push_back({head(s), s.flat() ? ball_2d : ball_3d});
@@ -104,4 +104,4 @@ Document pfc_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::pfc

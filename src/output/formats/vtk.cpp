@@ -4,7 +4,7 @@
 
 #include "output/formats/document.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::vtk {
 namespace {
 
 using Row = std::function<void(Text&, const Outgoing&)>;
@@ -72,7 +72,7 @@ std::string xml(const Specimen& s, const std::vector<Array>& all) {
 
 }  // namespace
 
-Document vtk_document(const Specimen& s) {
+Document make(const Specimen& s) {
   const std::vector<Array> all = arrays(s.rotation);
   Document document;
   std::string head = xml(s, all);
@@ -87,4 +87,4 @@ Document vtk_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::vtk

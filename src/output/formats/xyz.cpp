@@ -5,7 +5,7 @@
 
 #include "output/formats/document.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::xyz {
 namespace {
 
 std::string head(const Specimen& s) {
@@ -27,7 +27,7 @@ std::string head(const Specimen& s) {
 
 }  // namespace
 
-Document xyz_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back({head(s), [](Text& out, const Outgoing& p) {
                                  const auto& [x, v, w] = std::tie(p.row.position, p.row.velocity, p.row.spin);
@@ -40,4 +40,4 @@ Document xyz_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::xyz

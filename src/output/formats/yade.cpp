@@ -4,7 +4,7 @@
 #include "output/formats/document.hpp"
 #include "output/formats/law.hpp"
 
-namespace packmpi::output {
+namespace packmpi::output::yade {
 namespace {
 
 /// YADE knows cells that are periodic along all axes: where the pack is not, the cell is so large that images are
@@ -93,7 +93,7 @@ std::string script(const Specimen& s) {
 
 }  // namespace
 
-Document yade_document(const Specimen& s) {
+Document make(const Specimen& s) {
   Document document;
   document.sections.push_back({cell(s), [](Text& out, const Outgoing& p) {
                                  const Vec3& x = p.row.position;
@@ -104,4 +104,4 @@ Document yade_document(const Specimen& s) {
   return document;
 }
 
-}  // namespace packmpi::output
+}  // namespace packmpi::output::yade
