@@ -212,18 +212,25 @@ TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
   (void)sound({"contact.damping_ratio=5"});  // "auto": the limit is lower beyond 1
   EXPECT_THAT(refused({"contact.damping_ratio=5", "dynamics.time_step=1e-3"}), HasSubstr("damping_ratio 5"));
 
-  // Head on at +-1 m/s, twenty times as long as a contact without damping takes.
+  // Head on at +-1 m/s, until long after they parted. With s = overlap^{5/4} the law is that of a linear oscillator whose damping
+  // ratio is zeta = sqrt(6/5) xi. They part when the force is none, as nothing pulls: for zeta > 1, with roots of ratio q < 1,
+  // at the speed q^{(1 + q) / (1 - q)}.
   const auto speed_after = [&](double xi) {
-    input::Input in = test::vacuum(3, 1.0, 0.02, 2e-6, 1.0);
+    input::Input in = test::vacuum(3, 1.0, 0.02, 5e-7, 1.0);
     in.contact.damping_ratio = xi;
     test::Bench bench(comm_, in);
     bench.place({0.48, 0.5, 0.5}, 0.02, {1.0, 0.0, 0.0});
     bench.place({0.52, 0.5, 0.5}, 0.02, {-1.0, 0.0, 0.0});
     bench.start();
-    bench.step(10000);
+    bench.step(40000);
     return bench.state(1).v[0];
   };
+  const auto expected = [](double xi) {
+    const double zeta = std::sqrt(1.2) * xi, root = std::sqrt(zeta * zeta - 1.0), q = (zeta - root) / (zeta + root);
+    return std::pow(q, (1.0 + q) / (1.0 - q));
+  };
   EXPECT_NEAR(speed_after(0.0), 1.0, 1e-3);
+  for (const double xi : {1.0, 5.0}) EXPECT_NEAR(speed_after(xi) / expected(xi), 1.0, 1e-2) << xi;
 }
 
 TEST_F(Extremes, FrictionOfNoneAndTwo) {
