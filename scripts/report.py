@@ -138,25 +138,6 @@ def adapt(path):
     path.write_text(text[:start] + style + text[start:])
 
 
-def sizes_of(pack):
-    """What `packmpi analyze` tells as "sizes", for a program that does not yet."""
-    r, *asked = packs.asked_curve(pack.scene()["particles"]["radius"])
-    got_r, *got = packs.got_curve(pack.radius)
-    found = {}
-    for kind, curve, shares in zip(("number", "mass"), asked, got):
-        sides = {"asked": lambda share: float(2.0 * np.interp(share, curve, r)),
-                 "got": lambda share: float(2.0 * got_r[np.searchsorted(shares, share)])}
-        found[kind] = {side: {f"d{p}": diameter(p / 100.0) for p in (10, 30, 50, 60, 90)} for side, diameter in sides.items()}
-        for d in found[kind].values():
-            d["cu"], d["cc"] = d["d60"] / d["d10"], d["d30"] ** 2 / (d["d10"] * d["d60"])
-        above, below = (np.interp(np.nextafter(got_r, side * np.inf), r, curve) for side in (1, -1))   # of a jump
-        before = np.searchsorted(got_r, got_r, side="left") - 1   # of the particles with the same radius
-        up_to = shares[np.searchsorted(got_r, got_r, side="right") - 1]
-        found[kind]["distance"] = max(float(np.abs(up_to - above).max()),
-                                      float(np.abs(np.where(before < 0, 0.0, shares[before]) - below).max()))
-    return found
-
-
 def comparison(pack, analysis):
     got, layers = pack.summary, pack.layers
     rows = [["The pack"],
@@ -168,7 +149,7 @@ def comparison(pack, analysis):
              percent(float(np.mean(layers["fraction_got"])), got["fraction_asked"])],
             ["φ below the height asked", "–", f"{pack.phi:.4f}", "–"],
             ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"]]
-    for kind, match in (analysis.get("sizes") or sizes_of(pack)).items():
+    for kind, match in analysis["sizes"].items():
         asked, there = match["asked"], match["got"]
         rows.append([f"Diameters by {kind}"])
         rows += [[f"D<sub>{name[1:]}</sub> [mm]", number(1000.0 * asked[name]), number(1000.0 * there[name]),
