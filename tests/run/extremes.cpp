@@ -212,9 +212,9 @@ TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
   (void)sound({"contact.damping_ratio=5"});  // "auto": the limit is lower beyond 1
   EXPECT_THAT(refused({"contact.damping_ratio=5", "dynamics.time_step=1e-3"}), HasSubstr("damping_ratio 5"));
 
-  // Head on at +-1 m/s, until long after they parted. With s = overlap^{5/4} the law is that of a linear oscillator whose damping
-  // ratio is zeta = sqrt(6/5) xi. They part when the force is none, as nothing pulls: for zeta > 1, with roots of ratio q < 1,
-  // at the speed q^{(1 + q) / (1 - q)}.
+  // Head on at +-1 m/s, until long after they parted. With s = overlap^{5/4} the law is that of a linear oscillator
+  // whose damping ratio is zeta = sqrt(6/5) xi. They part when the force is none, as nothing pulls: for zeta > 1, with
+  // roots of ratio q < 1, at the speed q^{(1 + q) / (1 - q)}.
   const auto speed_after = [&](double xi) {
     input::Input in = test::vacuum(3, 1.0, 0.02, 5e-7, 1.0);
     in.contact.damping_ratio = xi;
