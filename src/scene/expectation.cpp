@@ -75,6 +75,13 @@ double mean_volume(const Scene& scene) {
   return geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
 }
 
+// Mean square of the particles' volume over the square of its mean.
+double uneven_volumes(const Scene& scene) {
+  if (scene.sizes.equal()) return 1.0;
+  const double mean = scene.sizes.curve().moment(scene.box.dimension);
+  return scene.sizes.curve().moment(2 * scene.box.dimension) / (mean * mean);
+}
+
 }  // namespace
 
 PileFraction expected_fraction(const Scene& scene) {
@@ -91,8 +98,13 @@ PileFraction expected_fraction(const Scene& scene) {
 std::int64_t particles_a_layer(const Scene& scene) {
   const double solid = scene.in.layers.fraction * scene.box.floor_area() * scene.in.layers.thickness;
   const double needed = solid / mean_volume(scene);
-  // The last one may overshoot: by half a particle, on average over the drawn radii.
-  return std::max<std::int64_t>(1, std::llround(scene.sizes.equal() ? std::ceil(needed - 1e-9) : needed + 0.5));
+  // The last one overshoots: the larger a particle, the more often it is the last, so by half of its mean square.
+  const double overshoot = 0.5 * uneven_volumes(scene);
+  return std::max<std::int64_t>(1, std::llround(scene.sizes.equal() ? std::ceil(needed - 1e-9) : needed + overshoot));
+}
+
+double deviation_of_count(const Scene& scene, double particles) {
+  return std::sqrt(particles * (uneven_volumes(scene) - 1.0));
 }
 
 double rise_of_layer(const Scene& scene, double fraction) {

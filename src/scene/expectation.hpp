@@ -19,6 +19,10 @@ struct PileFraction {
 /// Particles that fill a layer to its fraction; exact for equal radii, else the mean over seeds. Local, pure.
 [[nodiscard]] std::int64_t particles_a_layer(const Scene& scene);
 
+/// Standard deviation of the number of particles over seeds, of so many: radii are drawn until their volume is enough.
+/// sqrt(N) times the coefficient of variation of the volume (renewal theory, for many); 0 for equal radii.
+[[nodiscard]] double deviation_of_count(const Scene& scene, double particles);
+
 /// Height [m] by which a layer raises a pile of this solid fraction.
 [[nodiscard]] double rise_of_layer(const Scene& scene, double fraction);
 

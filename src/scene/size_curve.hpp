@@ -23,7 +23,7 @@ class SizeCurve {
   [[nodiscard]] double passing(input::Weighting weighting, double r) const;
   /// The smallest radius [m] that a share in (0, 1) of the particles (or the mass) does not exceed.
   [[nodiscard]] double quantile(input::Weighting weighting, double share) const;
-  /// Mean over the particles of radius^power, power 0 .. 3 [m^power].
+  /// Mean over the particles of radius^power, power 0 .. 6 [m^power].
   [[nodiscard]] double moment(int power) const;
   /// A radius [m] by number from two numbers in [0, 1): the first chooses the piece, the second the place in it.
   [[nodiscard]] double draw(double first, double second) const;

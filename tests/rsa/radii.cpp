@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "rsa/insert.hpp"
+#include "scene/expectation.hpp"
 #include "support/rsa_scenes.hpp"
 
 namespace packmpi {
@@ -277,6 +278,26 @@ TEST(Radii, ArePureFunctionsOfTheirNames) {
   EXPECT_NE(sizes.draw(1, 10), sizes.draw(1, 11));
   EXPECT_NE(sizes.draw(1, 10), sizes.draw(2, 10));
   EXPECT_NE(sizes.draw(1, 10), scene::Sizes(radius, 43).draw(1, 10));
+}
+
+// Radii are drawn until their volume fills the layer: mean and deviation of their number over many layers.
+TEST(Radii, AsManyAsAreExpectedFillALayer) {
+  const comm::Comm comm(MPI_COMM_SELF);
+  scene::Scene scene = test::rsa_scene(3, {1.0, 1.0, 1.0}, {true, true}, uniform_radius(0.01, 0.05), 0.2, 100);
+  scene.in.layers.thickness = 0.2;
+  constexpr int layers = 2000;
+  double sum = 0.0, squares = 0.0;
+  const double expected = static_cast<double>(scene::particles_a_layer(scene));
+  const double deviation = scene::deviation_of_count(scene, expected);
+  for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    const rsa::LayerRegion region{.layer = layer, .bottom = 0.0, .thickness = scene.in.layers.thickness};
+    const double off = static_cast<double>(rsa::particles_needed(comm, scene, region)) - expected;
+    sum += off;
+    squares += off * off;
+  }
+  EXPECT_NEAR(sum / layers, 0.0, 0.5 + 4.0 * deviation / std::sqrt(layers));  // the expectation is a whole number
+  EXPECT_NEAR(std::sqrt(squares / layers), deviation, 0.1 * deviation);
+  EXPECT_GT(deviation, 5.0);
 }
 
 }  // namespace
