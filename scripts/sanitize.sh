@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The unit tests at 1 and 2 ranks, and the system tests labelled "sanitize", under AddressSanitizer and
-# UndefinedBehaviorSanitizer, in build-sanitizers. About ten minutes; --quick, for CI, half of that: of the unit tests those at
+# UndefinedBehaviorSanitizer, in build-sanitizers. About ten minutes; --quick, half of that: of the unit tests those at
 # 2 ranks of the rooms where particles and messages are handled.
 # usage: [BUILD=folder] scripts/sanitize.sh [--quick] [options of ctest]
 set -euo pipefail
