@@ -31,7 +31,8 @@ os.makedirs(f"{sys.argv[1]}/tidy", exist_ok=True)
 json.dump(list(entries.values()), open(f"{sys.argv[1]}/tidy/compile_commands.json", "w"))
 print("\n".join(sorted(entries, key=lambda file: "kernel_impl" not in file and "Unity" not in file)))   # the longest first
 PYTHON
-    "${all[@]}" --checks=-bugprone-suspicious-include && find "$source_dir/src/comm" -name '*.cpp' | "${all[@]}" '--checks=-*,clang-analyzer-optin.mpi*' ||
+    "${all[@]}" --checks=-bugprone-suspicious-include &&
+    find "$source_dir/src/comm" -name '*.cpp' | "${all[@]}" '--checks=-*,clang-analyzer-optin.mpi*' ||
     { echo "check: clang-tidy found something" >&2; return 1; }
 }
 

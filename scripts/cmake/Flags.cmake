@@ -6,7 +6,7 @@ target_compile_options(packmpi_flags INTERFACE
   -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-semantic-interposition
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   $<$<BOOL:${PACKMPI_WERROR}>:-Werror>)
-# Without the checks of pointers that AddressSanitizer finds too, at half the time of compilation.
+# Without the checks of pointers that AddressSanitizer finds too: a fifth to a third of the time of compilation.
 if(PACKMPI_SANITIZE)
   target_compile_options(packmpi_flags INTERFACE
     -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)

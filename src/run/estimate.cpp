@@ -233,12 +233,12 @@ void add_counts(const scene::Scene& scene, const scene::PileFraction& fraction, 
   };
   e.a_layer = scene::particles_a_layer(scene);
   e.layers = {layers(0.0), layers(-fraction.error), layers(fraction.error)};
-  const auto by_chance = [&](std::int64_t count, double times) {
-    return std::llround(times * scene::deviation_of_count(scene, static_cast<double>(count)));
+  const auto by_chance = [&](std::int64_t count) {  // two standard deviations
+    return std::llround(2.0 * scene::deviation_of_count(scene, static_cast<double>(count)));
   };
   e.particles = {e.layers.value * e.a_layer, e.layers.least * e.a_layer, e.layers.most * e.a_layer};
-  e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least, 2.0));
-  e.particles.most += by_chance(e.particles.most, 2.0);
+  e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least));
+  e.particles.most += by_chance(e.particles.most);
   e.height = static_cast<double>(e.layers.value) * scene::rise_of_layer(scene, fraction.value);
 }
 

@@ -34,36 +34,18 @@ void append_raw(Text& out, const T& value) {
   out.append(bytes, bytes + sizeof value);
 }
 
-// The writers, by format; in files of their own.
-namespace lammps {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace liggghts {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace yade {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace esys {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace mercurydpm {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace lethe {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace pfc {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace xyz {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace csv {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
-namespace vtk {
-[[nodiscard]] Document make(const Specimen& specimen);
-}
+// The writers, each in a file and a namespace of its own.
+// clang-format off
+namespace lammps { Document make(const Specimen& specimen); }
+namespace liggghts { Document make(const Specimen& specimen); }
+namespace yade { Document make(const Specimen& specimen); }
+namespace esys { Document make(const Specimen& specimen); }
+namespace mercurydpm { Document make(const Specimen& specimen); }
+namespace lethe { Document make(const Specimen& specimen); }
+namespace pfc { Document make(const Specimen& specimen); }
+namespace xyz { Document make(const Specimen& specimen); }
+namespace csv { Document make(const Specimen& specimen); }
+namespace vtk { Document make(const Specimen& specimen); }
+// clang-format on
 
 }  // namespace packmpi::output
