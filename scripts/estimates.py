@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Makes packs and compares them with what `packmpi estimate` said: the table of doc/estimate.md.
+"""Makes packs and compares them with what `packmpi estimate` said, after its probe: the table of doc/estimate.md.
 
 usage: scripts/estimates.py [--cases WORD ...]       (only cases whose name has one of the words)
 
 Runs build/packmpi, one rank, one pack after the other, in results/estimates: friction, rotation, walls and size
-distributions, in 2D and 3D. About ten minutes of one core.
+distributions, in 2D and 3D. Three to ten minutes of one core.
 """
 import argparse
 import datetime
@@ -71,7 +71,7 @@ def solid_volume(pack, dimension):
 
 def row(name, scene, sets):
     words = [str(ROOT / "input" / (scene + ".toml")), *(word for one in sets for word in ("--set", one))]
-    told = json.loads(run(["estimate", *words, "--no-probe", "--json"]))
+    told = json.loads(run(["estimate", *words, "--json"]))
     run([*words, "--quiet", "--force", "-o", str(FOLDER)])
     summary = json.loads((FOLDER / (scene + ".json")).read_text())
     pack = FOLDER / (scene + ".hdf")
@@ -83,7 +83,7 @@ def row(name, scene, sets):
     print(f"{name}: {fraction['value']:.4f} {got:.4f}", flush=True)
     return (f"| {name} | {fraction['value']:.3f} ± {fraction['error']:.3f} | {got:.3f} | {number['value']} "
             f"({number['least']} to {number['most']}) | {summary['got']['particles']} | {told['files']['pack']} | "
-            f"{pack.stat().st_size} |")
+            f"{pack.stat().st_size} | {told['wall_seconds']:.2g} | {summary['provenance']['wall_seconds']:.2g} |")
 
 
 def main():
@@ -93,8 +93,8 @@ def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     rows = [row(*case) for case in cases() if any(word in case[0] for word in wanted)]
     head = (f"Made by `scripts/estimates.py` on {datetime.date.today()}; one pack a line, seed 1.\n\n"
-            "| scene | fraction, estimated | got | particles, estimated | got | pack, bytes, estimated | got |\n"
-            "|---|---|---|---|---|---|---|\n")
+            "| scene | fraction, estimated | got | particles, estimated | got | pack, bytes, estimated | got | "
+            "time, s, estimated | got |\n|---|---|---|---|---|---|---|---|---|\n")
     if wanted != [""]:
         print("\n".join(rows))
         return
