@@ -28,14 +28,17 @@ struct Memory {
   static constexpr std::uint64_t sign(int offset) { return differs(offset) ? 0x8000000000000000U : 0U; }
 };
 
-/// Pairs (or wall contacts) in flight. Rows of `in` are the fields of a record, differences or sums over the pair; rows
-/// of `out` are accumulators.
+/// Pairs (or wall contacts) in flight. Rows of `place` and then of `in` are the fields of a record, differences or sums
+/// over the pair; rows of `out` are accumulators. R: double, or float in scenes of mixed precision; places stay double.
+template <class R>
 struct Block {
   static constexpr int size = 128;
-  static constexpr int row = size + 8;  // rows a power of two apart would share cache sets
-  alignas(64) double in[12][row];
+  static constexpr int row = size + 8;        // rows a power of two apart would share cache sets
+  static constexpr int places = 4;            // fields in `place`
+  alignas(64) double place[places + 1][row];  // the last: the distance of a wall
+  alignas(64) R in[8][row];                   // from field number `places` on
   alignas(64) std::int64_t out[8][row];
-  alignas(64) double strength[size];
+  alignas(64) R strength[size];
   alignas(64) LocalIndex first[size];  // slots of records; filled up to a multiple of 8 with the last pair
   alignas(64) LocalIndex second[size];
   alignas(64) LocalIndex first_slot[size];  // slots of accumulators; the fill and ghosts go to the dump
@@ -54,7 +57,8 @@ struct Tally {
 };
 
 /// The largest of `count` (a multiple of 4) numbers and `so_far`; NaN if one of them is not finite.
-PACKMPI_INLINE double largest(const double* x, int count, double so_far) {
+template <class R>
+PACKMPI_INLINE double largest(const R* x, int count, double so_far) {
   Lanes most = spread(so_far);
   BitLanes broken = {};
   for (int p = 0; p < count; p += 4) {
@@ -68,10 +72,11 @@ PACKMPI_INLINE double largest(const double* x, int count, double so_far) {
   return m;
 }
 
-/// Take up to Block::size pairs, as many as the ring holds above `base`, the lowest slot in use.
-PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block& b) {
+/// Take up to a block of pairs, as many as the ring holds above `base`, the lowest slot in use.
+template <class R>
+PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block<R>& b) {
   const std::int64_t left = data.pairs - pair;
-  const int wanted = left < Block::size ? static_cast<int>(left) : Block::size;
+  const int wanted = left < b.size ? static_cast<int>(left) : b.size;
   const LocalIndex* first = data.first + pair;
   const LocalIndex* second = data.second + pair;
   const auto mask = static_cast<LocalIndex>(data.ring_mask);
@@ -106,7 +111,7 @@ PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex bas
 
 /// Stage 1: records of both ends, differences and sums, transposed.
 template <Features F>
-PACKMPI_INLINE void pack(const double* records, Block& b) {
+PACKMPI_INLINE void pack(const double* records, Block<Real<F>>& b) {
   using M = Memory<F>;
   constexpr int stride = M::stride;
   const std::int64_t ahead = b.reach + 80;  // records that the next blocks will be the first to touch
@@ -126,7 +131,10 @@ PACKMPI_INLINE void pack(const double* records, Block& b) {
         pair[e] = load(j[e] + 4 * chunk) + as_doubles(as_bits(load(i[e] + 4 * chunk)) ^ sign);
       }
       transpose(pair[0], pair[1], pair[2], pair[3]);
-      for (int e = 0; e < 4; ++e) store(b.in[4 * chunk + e] + p, pair[e]);
+      for (int e = 0; e < 4; ++e) {
+        if (chunk == 0) store(b.place[e] + p, pair[e]);
+        if (chunk > 0) store(b.in[4 * (chunk - 1) + e] + p, pair[e]);
+      }
     }
   }
 }
@@ -134,7 +142,7 @@ PACKMPI_INLINE void pack(const double* records, Block& b) {
 /// Stage 3: integers back to one vector a pair, added to the accumulators of the first, and of the second with the
 /// reaction: forces change sign, moments do not.
 template <Features F>
-PACKMPI_INLINE void scatter(std::int64_t* ring, Block& b) {
+PACKMPI_INLINE void scatter(std::int64_t* ring, Block<Real<F>>& b) {
   constexpr int accumulators = Memory<F>::accumulators;
   constexpr int forces = Memory<F>::forces;
   constexpr int moments = Memory<F>::moments;

@@ -2,6 +2,8 @@
 //   PACKMPI_KERNEL     the namespace of all code in it, for example x86_64_v3_3d
 //   PACKMPI_DIMENSION  2 or 3
 // Nothing with external linkage is called, so the linker cannot mix the builds.
+#include <utility>
+
 #include "dynamics/kernel_motion.hpp"
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
@@ -9,13 +11,13 @@ namespace packmpi::dynamics::PACKMPI_KERNEL {
 template <Features F>
 struct Stepper {
   const StepData& data;
-  Constants pair = constants_of(data.law, data.law.pair);
-  Constants wall = constants_of(data.law, data.law.wall);
+  Constants<Real<F>> pair = constants_of<Real<F>>(data.law, data.law.pair);
+  Constants<Real<F>> wall = constants_of<Real<F>>(data.law, data.law.wall);
   Periods periods = periods_of(data);
   Motion motion = motion_of<F>(data);
   double scale = 1.0 / data.force_quantum;
   Tally tally{};
-  Block block;  // 30 KB, on the stack
+  Block<Real<F>> block;  // 30 KB, on the stack
   LocalIndex done = 0;
   std::int64_t walls_done = 0;
 
@@ -56,8 +58,8 @@ struct Stepper {
     const bool broken = (tally.broken[0] | tally.broken[1] | tally.broken[2]) != 0;
     const double square = v[0] * v[0] + v[1] * v[1] + (planar_spin ? 0.0 : v[2] * v[2]);
     const double limit = max_quanta * data.force_quantum;
-    const bool in_range = tally.pair_force * (1.0 + pair.friction) <= limit &&
-                          tally.wall_force * (1.0 + wall.friction) <= limit;  // false for NaN
+    const bool in_range = tally.pair_force * (1.0 + data.law.pair.friction) <= limit &&
+                          tally.wall_force * (1.0 + data.law.wall.friction) <= limit;  // false for NaN
     const double both = tally.pair_force + tally.wall_force;
     const double most = tally.pair_force < tally.wall_force ? tally.wall_force : tally.pair_force;
     const double force = both - both == 0.0 ? most : __builtin_nan("");
@@ -73,28 +75,35 @@ static StepReport step(const StepData& data) {
 }
 
 /// The kernels there are, by number: which moving parts (0 none, 1 friction, 2 friction and rotation), then three
-/// switches.
+/// switches. From 24 on in mixed precision, always with drag: without it the coefficient is zero.
+constexpr int kernels_of_a_precision = 24;
+
 constexpr Features features_of(int number) {
   Features f;
   f.dimension = PACKMPI_DIMENSION;
+  f.mixed = number >= kernels_of_a_precision;
+  number %= kernels_of_a_precision;
   f.rotation = number / 8 == 2;
   f.friction = number / 8 >= 1;
-  f.drag = (number & 1) != 0;
+  f.drag = (number & 1) != 0 || f.mixed;
   f.graded = (number & 2) != 0;
   f.periodic = (number & 4) != 0;
   f.near_field = false;
   return f;
 }
 
+template <class Numbers>
+struct Table;
 template <int... Number>
-struct Table {
+struct Table<std::integer_sequence<int, Number...>> {
   static constexpr Kernel kernels[] = {&step<features_of(Number)>...};
 };
-using Kernels = Table<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23>;
+using Kernels = Table<std::make_integer_sequence<int, 2 * kernels_of_a_precision>>;
 
 Kernel kernel(const Features& f) {
   const int moving = f.rotation ? 2 : (f.friction ? 1 : 0);  // spin without friction is rare: friction zero does it
-  return Kernels::kernels[moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0)];
+  const int number = moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0);
+  return Kernels::kernels[number + (f.mixed ? kernels_of_a_precision : 0)];
 }
 
 }  // namespace packmpi::dynamics::PACKMPI_KERNEL

@@ -21,28 +21,29 @@ PACKMPI_INLINE Plane plane_of(const StepData& data, neighbor::Wall wall) {
 
 /// Fill entry p of the block for one particle at one wall: the wall is a second end at rest.
 template <Features F>
-PACKMPI_INLINE void put_wall(const StepData& data, Block& b, int p, LocalIndex particle, neighbor::Wall wall) {
+PACKMPI_INLINE void put_wall(const StepData& data, Block<Real<F>>& b, int p, LocalIndex particle, neighbor::Wall wall) {
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
   const Plane plane = plane_of<F>(data, wall);
-  for (int a = 0; a < F.dimension; ++a) {
-    b.in[a][p] = a == plane.axis ? plane.sign : 0.0;
-    b.in[layout.velocity + a][p] = -record[layout.velocity + a];
+  for (int a = F.dimension; a < layout.stride; ++a) {  // places but the position
+    if (a < b.places) b.place[a][p] = record[a];
+    if (a >= b.places) b.in[a - b.places][p] = static_cast<Real<F>>(record[a]);
   }
-  b.in[wall_distance][p] = plane.offset - plane.sign * record[plane.axis];
-  b.in[layout.radius][p] = record[layout.radius];
-  b.in[layout.curvature][p] = record[layout.curvature];
-  for (int a = 0; a < layout.spin_components(); ++a) b.in[layout.spin + a][p] = record[layout.spin + a];
+  for (int a = 0; a < F.dimension; ++a) {
+    b.place[a][p] = a == plane.axis ? plane.sign : 0.0;
+    b.in[layout.velocity - b.places + a][p] = -static_cast<Real<F>>(record[layout.velocity + a]);
+  }
+  b.place[b.places][p] = plane.offset - plane.sign * record[plane.axis];
 }
 
 template <Features F>
-PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block& b, Tally& tally,
-                              std::int64_t from, std::int64_t to) {
+PACKMPI_INLINE void add_walls(const StepData& data, const Constants<Real<F>>& c, double scale, Block<Real<F>>& b,
+                              Tally& tally, std::int64_t from, std::int64_t to) {
   constexpr int accumulators = Memory<F>::accumulators;
   constexpr int forces = Memory<F>::forces;
   constexpr int moments = Memory<F>::moments;
   while (from < to) {
-    const int count = to - from < Block::size ? static_cast<int>(to - from) : Block::size;
+    const int count = to - from < b.size ? static_cast<int>(to - from) : b.size;
     b.filled = (count + 7) & ~7;
     for (int p = 0; p < b.filled; ++p) {
       const std::int64_t entry = from + (p < count ? p : count - 1);

@@ -25,7 +25,7 @@ PACKMPI_INLINE double shortest(double d, double period, double half) {
 }
 
 template <Features F>
-PACKMPI_INLINE void put(Block& b, int p, const Force& f, double scale) {
+PACKMPI_INLINE void put(Block<Real<F>>& b, int p, const Force<Real<F>>& f, double scale) {
   b.out[0][p] = to_integer(f.force.x * scale);
   b.out[1][p] = to_integer(f.force.y * scale);
   if constexpr (F.dimension == 3) b.out[2][p] = to_integer(f.force.z * scale);
@@ -40,63 +40,103 @@ PACKMPI_INLINE void put(Block& b, int p, const Force& f, double scale) {
 
 /// The contact of entry p, given its normal and overlap.
 template <Features F>
-PACKMPI_INLINE void contact(Block& b, int p, const Constants& c, const Reduced& reduced, const Vector& n,
-                            double overlap, double scale) {
+PACKMPI_INLINE void contact(Block<Real<F>>& b, int p, const Constants<Real<F>>& c, const Reduced<Real<F>>& reduced,
+                            const Vector<Real<F>>& n, Real<F> overlap, double scale) {
   constexpr particles::Layout layout = F.layout();
-  constexpr int v = layout.velocity;
-  constexpr int s = F.rotation ? layout.spin : 0;
+  constexpr int v = layout.velocity - b.places;
+  constexpr int s = F.rotation ? layout.spin - b.places : v;
   if constexpr (F.dimension == 3) {
     put<F>(b, p,
-           contact_3d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
-                         {b.in[s][p], b.in[s + 1][p], b.in[s + 2][p]}),
+           contact_3d<F, Real<F>>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
+                                  {b.in[s][p], b.in[s + 1][p], b.in[s + 2][p]}),
            scale);
   } else {
-    put<F>(b, p, contact_2d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], 0.0}, b.in[s][p]), scale);
+    put<F>(b, p, contact_2d<F, Real<F>>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], Real<F>{0}}, b.in[s][p]),
+           scale);
   }
+}
+
+/// Sum of radii and curvatures of entry p, or of the one particle at a wall.
+template <Features F>
+PACKMPI_INLINE Real<F> curvature_at(const Block<Real<F>>& b, int p) {
+  constexpr int field = F.layout().curvature;
+  if constexpr (field < b.places) {
+    return static_cast<Real<F>>(b.place[field][p]);
+  } else {
+    return b.in[field - b.places][p];
+  }
+}
+
+/// Normal, and overlap before it is cut at zero, of two centres at (x, y, z), whose radii add up to `radius`.
+template <class R>
+struct Touch {
+  Vector<R> normal;
+  double gap;
+};
+
+PACKMPI_INLINE Touch<double> touch(double x, double y, double z, double square, double radius) {
+  const double distance = root(square + tiny<double>());
+  const double inverse = 1.0 / distance;
+  return {{x * inverse, y * inverse, z * inverse}, radius - distance};
+}
+
+/// Root and quotient are single, and a step of Newton's method makes the distance good to 1e-14: an overlap is a ten
+/// thousandth of it, and would have three digits left.
+PACKMPI_INLINE Touch<float> touch_mixed(double x, double y, double z, double square, double radius) {
+  const float estimate = root(static_cast<float>(square) + tiny<float>());
+  const float inverse = 1.0F / estimate;
+  const double about = estimate;
+  const double distance = about + (square - about * about) * (0.5 * static_cast<double>(inverse));
+  return {{static_cast<float>(x) * inverse, static_cast<float>(y) * inverse, static_cast<float>(z) * inverse},
+          radius - distance};
 }
 
 /// All pairs of the block.
 template <Features F>
-PACKMPI_INLINE void resolve_pairs(Block& b, const Constants& c, const Periods& periods, double scale) {
+PACKMPI_INLINE void resolve_pairs(Block<Real<F>>& b, const Constants<Real<F>>& c, const Periods& periods,
+                                  double scale) {
+  using R = Real<F>;
   constexpr particles::Layout layout = F.layout();
-  const Constants k = c;
+  const Constants<R> k = c;
   const Periods w = periods;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    double x = b.in[0][p];
-    double y = b.in[1][p];
+    double x = b.place[0][p];
+    double y = b.place[1][p];
+    const double z = F.dimension == 3 ? b.place[2][p] : 0.0;
     if constexpr (F.periodic) {
       x = shortest(x, w.period[0], w.half[0]);
       if constexpr (F.dimension == 3) y = shortest(y, w.period[1], w.half[1]);
     }
     double square = x * x + y * y;
-    if constexpr (F.dimension == 3) square = square + b.in[2][p] * b.in[2][p];
-    const double distance = __builtin_sqrt(square + tiny);
-    const double inverse = 1.0 / distance;
-    const Vector n = {x * inverse, y * inverse, F.dimension == 3 ? b.in[2][p] * inverse : 0.0};
-    const double gap = b.in[layout.radius][p] - distance;
-    const double overlap = gap < 0.0 ? 0.0 : gap;
-    Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], b.in[layout.radius][p]);
-    contact<F>(b, p, k, reduced, n, overlap, scale);
+    if constexpr (F.dimension == 3) square = square + z * z;
+    const double radius = b.place[layout.radius][p];
+    Touch<R> at;
+    if constexpr (F.mixed) at = touch_mixed(x, y, z, square, radius);
+    if constexpr (!F.mixed) at = touch(x, y, z, square, radius);
+    const R overlap = static_cast<R>(at.gap < 0.0 ? 0.0 : at.gap);
+    Reduced<R> reduced = {k.reduced_radius, k.reduced_mass};
+    if constexpr (F.graded) reduced = reduced_of_pair<R>(k.mass_factor, curvature_at<F>(b, p), static_cast<R>(radius));
+    contact<F>(b, p, k, reduced, at.normal, overlap, scale);
   }
 }
 
-/// Rows of Block::in that only walls use: normal and distance of the centre from the plane, negative beyond it.
-inline constexpr int wall_distance = 11;
-
-/// All wall contacts of the block; rows 0 .. dimension-1 of `in` hold the normal, towards the wall.
+/// All wall contacts of the block; rows 0 .. dimension-1 of `place` hold the normal, towards the wall, the last one the
+/// distance of the centre from the plane, negative beyond it.
 template <Features F>
-PACKMPI_INLINE void resolve_walls(Block& b, const Constants& c, double scale) {
+PACKMPI_INLINE void resolve_walls(Block<Real<F>>& b, const Constants<Real<F>>& c, double scale) {
+  using R = Real<F>;
   constexpr particles::Layout layout = F.layout();
-  const Constants k = c;
+  const Constants<R> k = c;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    const Vector n = {b.in[0][p], b.in[1][p], F.dimension == 3 ? b.in[2][p] : 0.0};
-    const double gap = b.in[layout.radius][p] - b.in[wall_distance][p];
-    const double overlap = gap < 0.0 ? 0.0 : gap;
-    Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], b.in[layout.radius][p]);
+    const Vector<R> n = {static_cast<R>(b.place[0][p]), static_cast<R>(b.place[1][p]),
+                         F.dimension == 3 ? static_cast<R>(b.place[2][p]) : R{0}};
+    const double radius = b.place[layout.radius][p];
+    const double gap = radius - b.place[b.places][p];
+    const R overlap = static_cast<R>(gap < 0.0 ? 0.0 : gap);
+    Reduced<R> reduced = {k.reduced_radius, k.reduced_mass};
+    if constexpr (F.graded) reduced = reduced_of_wall<R>(k.mass_factor, curvature_at<F>(b, p), static_cast<R>(radius));
     contact<F>(b, p, k, reduced, n, overlap, scale);
   }
 }

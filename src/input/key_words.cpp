@@ -79,7 +79,6 @@ std::vector<std::string_view> choices(const Key& key) {
         }
       },
       sample(key));
-  std::erase_if(words, [&](std::string_view one) { return std::ranges::find(key.later, one) != key.later.end(); });
   return words;
 }
 

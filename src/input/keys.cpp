@@ -73,11 +73,7 @@ Key when(Condition condition, Key key) {
   return key;
 }
 
-/// Recognised, and refused: words, or any number but one.
-Key later(std::vector<Text> words, Key key) {
-  key.later = std::move(words);
-  return key;
-}
+/// Recognised, and refused: any number but one.
 Key only(double value, Key key) {
   key.only = value;
   return key;
@@ -276,8 +272,8 @@ std::vector<Key> dynamics_keys() {
          "... and the speed of their mean height below this times sqrt(g d), d being the mean diameter ...")),
     when(settled, real("dynamics.settled_hold", at(dynamics, &Dynamics::settled_hold), time, above(0), "0.05",
          "... for so long. Both are looked at ten times in this time.")),
-    later({"mixed"}, word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
-         "Arithmetic of the contact law.")),
+    word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
+         "Arithmetic of the contact law; mixed: in single precision, with overlaps, positions and sums in double."),
     whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
          "So many of the newest layers move; older ones stand still, as walls to them, until the thaw. 0: all move."),
     real("dynamics.thaw", at(dynamics, &Dynamics::thaw), time, at_least(0), "auto",

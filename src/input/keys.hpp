@@ -54,7 +54,6 @@ struct Key {
   std::string_view doc = "";
   Condition when = {};
   std::vector<std::string_view> choices = {};  ///< words of a text key; those of an enumeration are known by its type
-  std::vector<std::string_view> later = {};    ///< words that are recognised and refused
   std::optional<double> only = {};             ///< the one number that is not refused
 
   [[nodiscard]] bool applies(const Input& in) const { return when.holds == nullptr || when.holds(in); }
@@ -72,7 +71,7 @@ struct Key {
 /// Entries the key's list has in this scene; 0: any number.
 [[nodiscard]] std::size_t entries(const Key& key, const Input& in);
 
-/// The words the key can have, those to be refused left out; empty for a key of another type.
+/// The words the key can have; empty for a key of another type.
 [[nodiscard]] std::vector<std::string_view> choices(const Key& key);
 
 /// What the key wants: "a number > 0 [m]", "true or false", "\"stop\", \"viscous\" or \"none\"".

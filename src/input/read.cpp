@@ -75,19 +75,6 @@ void refuse_unknown(const Table& table, const std::string& path) {
   }
 }
 
-/// Keys and words that later versions will have: refused by name, before anything that belongs to them is called
-/// unknown.
-void refuse_later(const Document& document) {
-  for (const Key& key : keys()) {
-    const Node* node = document.find(key.path);
-    if (node == nullptr) continue;
-    const auto* text = std::get_if<std::string>(&node->value);
-    if (text == nullptr || std::ranges::find(key.later, *text) == key.later.end()) continue;
-    fail(node->place, key.path,
-         fmt::format("{} is not available in this version; use {}", describe(*node), wanted(key)));
-  }
-}
-
 void read_key(const Key& key, const Document& document, Input& in) {
   const Node* node = document.find(key.path);
   if (!key.applies(in)) {
@@ -170,7 +157,6 @@ std::optional<CurveFile> named_curve(const std::string& text, const std::string&
 Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
             const std::optional<CurveFile>& curve) {
   const Document document = with_changes(text, path, overrides);
-  refuse_later(document);
   refuse_unknown(document.root(), "");
   Input in;
   in.file = path;

@@ -42,7 +42,6 @@ std::string value_cell(const Key& key) {
 std::string doc_cell(const Key& key) {
   std::string text(key.doc);
   if (!key.when.words.empty()) text += fmt::format(" Only if {}.", key.when.words);
-  if (!key.later.empty()) text += fmt::format(" Not available in this version: {}.", joined(key.later, "and"));
   if (key.only) text += fmt::format(" Only {:g} is available in this version.", *key.only);
   return text;
 }

@@ -19,8 +19,15 @@ constexpr double permille = 1e-3;
 struct Shape {
   int dimension;
   bool rotation;
+  bool mixed = false;
 };
-constexpr Shape shapes[] = {{2, false}, {2, true}, {3, false}, {3, true}};
+constexpr Shape shapes[] = {{2, false}, {2, true}, {3, false}, {3, true}, {2, true, true}, {3, true, true}};
+
+scene::Scene scene_of(const Shape& shape, double radius) {
+  scene::Scene s = plain_scene(shape.dimension, radius);
+  s.features.mixed = shape.mixed;
+  return s;
+}
 
 Vec3 vector(int dimension, double lateral, double up) {
   return dimension == 3 ? Vec3{lateral, 50.0, up} : Vec3{lateral, up, 0.0};
@@ -75,7 +82,7 @@ Impact head_on(const scene::Scene& s, double v, World* after = nullptr) {
 TEST(Physics, HertzImpactOfTwoGlassSpheres) {  // Chung & Ooi (2011), test 1
   for (const Shape& shape : shapes) {
     for (const bool graded : {false, true}) {
-      scene::Scene s = plain_scene(shape.dimension, 0.01);
+      scene::Scene s = scene_of(shape, 0.01);
       s.features.rotation = s.features.friction = shape.rotation;
       if (graded) support::make_graded(s, 0.005, 0.01);
       set_material(s, 48e9, 0.20, 2800.0);
@@ -91,7 +98,7 @@ TEST(Physics, HertzImpactOfTwoGlassSpheres) {  // Chung & Ooi (2011), test 1
 TEST(Physics, HertzImpactOnARigidPlane) {  // Chung & Ooi (2011), test 2
   for (const Shape& shape : shapes) {
     for (const bool graded : {false, true}) {
-      scene::Scene s = plain_scene(shape.dimension, 0.1);
+      scene::Scene s = scene_of(shape, 0.1);
       s.features.rotation = s.features.friction = shape.rotation;
       if (graded) support::make_graded(s, 0.05, 0.1);
       set_material(s, 70e9, 0.30, 2699.0);
@@ -138,12 +145,12 @@ double restitution(scene::Scene s, double v, double damping) {
 TEST(Physics, RestitutionDoesNotDependOnSpeed) {
   for (const Shape& shape : shapes) {
     for (const bool cutoff : {false, true}) {
-      scene::Scene s = plain_scene(shape.dimension, 0.01);
+      scene::Scene s = scene_of(shape, 0.01);
       s.in.contact.tension_cutoff = cutoff;
       const double slow = restitution(s, 0.01, 0.2);
       EXPECT_WITHIN(restitution(s, 0.1, 0.2), slow);
       EXPECT_WITHIN(restitution(s, 1.0, 0.2), slow);
-      s = plain_scene(shape.dimension, 0.01);
+      s = scene_of(shape, 0.01);
       s.in.contact.tension_cutoff = cutoff;
       set_material(s, 3e8, 0.1, 700.0);
       EXPECT_WITHIN(restitution(s, 0.1, 0.2), slow);
@@ -165,7 +172,7 @@ TEST(Physics, RestitutionOfTheLiteralLawIsExact) {
 }
 
 scene::Scene rough_scene(const Shape& shape, double friction) {
-  scene::Scene s = plain_scene(shape.dimension, 0.01);
+  scene::Scene s = scene_of(shape, 0.01);
   s.features.rotation = shape.rotation;
   support::add_friction(s, friction);
   return s;
@@ -227,7 +234,7 @@ TEST(Physics, SlidingSphereStartsToRoll) {
   constexpr double mu = 0.2;
   constexpr double v0 = 0.4;
   constexpr double end = 2.0 * v0 / (7.0 * mu * 2.0);  // of slip
-  for (const Shape& shape : {shapes[1], shapes[3]}) {
+  for (const Shape& shape : {shapes[1], shapes[3], shapes[4], shapes[5]}) {
     scene::Scene s = rough_scene(shape, mu);
     s.in.contact.damping_ratio = 0.1;
     s.time_step = 2e-5;
@@ -246,7 +253,7 @@ TEST(Physics, SlidingSphereStartsToRoll) {
 }
 
 TEST(Physics, CentreVelocitiesDoNotFeelSpin) {  // the literal eq. (14): friction brakes the sphere to a stop
-  for (const Shape& shape : {shapes[1], shapes[3]}) {
+  for (const Shape& shape : {shapes[1], shapes[3], shapes[4], shapes[5]}) {
     scene::Scene s = rough_scene(shape, 0.2);
     s.in.contact.friction_velocity = input::FrictionVelocity::centre;
     World world = resting_sphere(s, 0.04);
@@ -303,7 +310,7 @@ TEST(Physics, ColumnUnderGravity) {
 
 TEST(Physics, FreeFallWithDrag) {
   for (const Shape& shape : shapes) {
-    scene::Scene s = plain_scene(shape.dimension, 0.01);
+    scene::Scene s = scene_of(shape, 0.01);
     s.features.rotation = s.features.friction = shape.rotation;
     s.features.drag = true;
     s.in.jamming.gravity = 2.0;
@@ -324,7 +331,7 @@ TEST(Physics, FreeFallWithDrag) {
 
 TEST(Physics, CentreBeyondAWallIsPushedBack) {
   for (const Shape& shape : shapes) {
-    scene::Scene s = plain_scene(shape.dimension, 0.01);
+    scene::Scene s = scene_of(shape, 0.01);
     s.features.rotation = s.features.friction = shape.rotation;
     World world(s);
     world.add(vector(shape.dimension, 50.0, -0.002), {});
