@@ -144,8 +144,8 @@ The paper's solid fractions in 3D. Ours lie {min(gaps):.3f} to {max(gaps):.3f} a
 with the same readings of the method also come out above the paper: an independent serial one (tables above) and LAMMPS
 with the nearest law it has (example 5.3: phi_bulk 0.607 with rotation, 0.581 without). The paper's columns in 3D vary
 little from pack to pack (0.534 to 0.542 in one of them), as if the inserted volume had set them: most likely its loop
-stops by another rule than the text says. Its remark on 5.3 that spheres of radius 0.01 m form an fcc lattice was not
-examined.
+stops by another rule than the text says. Its remark on 5.3 that spheres of radius 0.01 m form an fcc lattice is not
+confirmed: there is none ([analyze.md](analyze.md)).
 """.splitlines() + [""]
 
 
