@@ -29,6 +29,7 @@ OFF = {"dynamics.rotation": "false"}
 BRICK = {"container.size": "[0.6,0.6,0.5]", "layers.maximum": "12"}
 TALL = {"container.size": "[0.6,0.6,1.0]", "layers.maximum": "24"}
 SMALL = {"container.size": "[0.4,0.4,0.33]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "8"}
+TINY = {"container.size": "[0.2,0.2,0.25]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "6"}
 TWELVE = {"layers.maximum": "12"}
 PERIODIC = {"container.boundary": '["periodic","periodic"]'}
 # Coarse rock, nothing of it as in the paper's examples: size, shape of the grading, density, modulus, friction, damping, gravity.
@@ -51,8 +52,10 @@ SCENES = {
     "2d_off": ("paper_5_1", {**TWELVE, **OFF}, 10, "the same, rotation off"),
     "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
     "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
-    "rock": ("paper_5_3", ROCK, 3, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; not used to choose the presets"),
+    "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; not used to choose the presets"),
+    "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
+WITHOUT_PRESETS = {"tiny_on"}
 PAPER = {"fidelity": "paper"}
 REFERENCE = "paper"
 SAME_MASS = {"tall_off": {"layers.maximum": "23"}}   # the reference reaches H_d with these, a shorter protocol may not
@@ -66,7 +69,7 @@ def viscous(slip_time):
     return {"contact.regularisation": "viscous", "contact.slip_time": slip_time}
 
 
-# knob: {setting: options}; all but the presets on small_on unless --scenes says otherwise.
+# knob: {setting: options}
 KNOBS = {
     "presets": {"balanced": {"fidelity": "balanced"}, "draft": {"fidelity": "draft"}},
     "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.4e-4", "3e-4")},
@@ -87,9 +90,13 @@ KNOBS = {
                  "friction without a cap": {"contact.regularisation": "none"}},
     "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5")},
     "thaw": {f"window 3, thaw {t} s": {"dynamics.window": "3", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
+    "precision": {"mixed precision": {"dynamics.precision": "mixed"}},
+    "implicit": {f"theta {theta}, dt {dt}": {"dynamics.theta": theta, "dynamics.time_step": dt}
+                 for theta, dt in (("0.5", "2e-4"), ("0.5", "5e-4"), ("1", "5e-4"), ("1", "1e-3"), ("1", "2e-3"), ("1", "5e-3"))},
     "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},
 }
 SEEDS_OF_KNOBS = 4
+KNOB_SCENES = {"precision": ("small_on", "graded_on", "2d_on"), "implicit": ("tiny_on",)}   # where not on --knob-scenes
 FILES_OWN = ("layers.duration", "dynamics.time_step", "fidelity")   # what a setting says instead of the scene's file
 
 
@@ -112,12 +119,12 @@ def planned(options):
         wanted = options.seeds or seeds
         for seed in range(1, wanted + 1):
             for setting, values in {**({} if options.no_references else {REFERENCE: {}}),
-                                    **(KNOBS["presets"] if "presets" in options.knobs else {})}.items():
+                                    **(KNOBS["presets"] if "presets" in options.knobs and scene not in WITHOUT_PRESETS else {})}.items():
                 same = {} if setting == REFERENCE else SAME_MASS.get(scene, {})
                 runs.append((scene, setting, {**changes, **PAPER, **values, **same}, seed))
-        if scene not in options.knob_scenes:
-            continue
         for knob in options.knobs:
+            if scene not in KNOB_SCENES.get(knob, options.knob_scenes):
+                continue
             for setting, values in KNOBS[knob].items() if knob != "presets" else ():
                 for seed in range(1, (options.seeds or SEEDS_OF_KNOBS) + 1):
                     runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
