@@ -46,10 +46,11 @@ h5::Column record_column(const std::string& name, const std::string& unit, const
                          const std::vector<RecordRow>& rows, int begin, int width) {
   const auto from = static_cast<std::size_t>(begin);
   const auto wide = static_cast<std::size_t>(width);
-  auto bytes = [&rows, from, wide] {
-    std::vector<std::byte> buffer(rows.size() * wide * sizeof(double));
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      std::memcpy(buffer.data() + k * wide * sizeof(double), rows[k].record.data() + from, wide * sizeof(double));
+  auto bytes = [&rows, from, wide](std::size_t first, std::size_t count) {
+    std::vector<std::byte> buffer(count * wide * sizeof(double));
+    std::byte* out = buffer.data();
+    for (std::size_t k = first; k < first + count; ++k, out += wide * sizeof(double)) {
+      std::memcpy(out, rows[k].record.data() + from, wide * sizeof(double));
     }
     return buffer;
   };

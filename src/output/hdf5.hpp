@@ -106,14 +106,15 @@ struct Slab {
   hsize_t total, offset, count;
 };
 
-/// A dataset to be: rows of `width` elements (width 1: one axis). `bytes` makes this rank's rows when their turn comes.
+/// A dataset to be: rows of `width` elements (width 1: one axis). `bytes` makes `count` of this rank's rows, from row
+/// `first` of them on, when their turn comes.
 struct Column {
   std::string path;
   std::string unit;  ///< "": no unit attribute
   Handle type;
   hsize_t width;
   Slab slab;
-  std::function<std::vector<std::byte>()> bytes;
+  std::function<std::vector<std::byte>(std::size_t first, std::size_t count)> bytes;
 };
 
 /// Creates the dataset with its space in the file: contiguous, not filled, no rows written.
@@ -133,10 +134,10 @@ template <class T, class Row, class Get>
                                  Get get) {
   using Cell = std::decay_t<std::invoke_result_t<Get, const Row&>>;
   static_assert(sizeof(Cell) == sizeof(T) * row_width<T, Cell>);
-  auto bytes = [&rows, get] {
-    std::vector<std::byte> buffer(rows.size() * sizeof(Cell));
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Cell cell = get(rows[k]);
+  auto bytes = [&rows, get](std::size_t first, std::size_t count) {
+    std::vector<std::byte> buffer(count * sizeof(Cell));
+    for (std::size_t k = 0; k < count; ++k) {
+      const Cell cell = get(rows[first + k]);
       const auto* raw = reinterpret_cast<const std::byte*>(&cell);
       std::copy(raw, raw + sizeof cell, buffer.begin() + static_cast<std::ptrdiff_t>(k * sizeof cell));
     }

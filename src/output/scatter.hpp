@@ -29,8 +29,10 @@ struct IdBlocks {
   }
 };
 
+/// Rows that stayed here, then those that came.
 template <class Row, class What>
-void for_each_row(const std::vector<comm::Parcel>& parcels, What&& what) {
+void for_each_row(const std::vector<Row>& own, const std::vector<comm::Parcel>& parcels, What&& what) {
+  for (const Row& row : own) what(row);
   for (const comm::Parcel& parcel : parcels) {
     for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(Row)) {
       Row row;
@@ -43,11 +45,11 @@ void for_each_row(const std::vector<comm::Parcel>& parcels, What&& what) {
 /// The row with key `begin` + k into rows[k]. False if a key came twice; all must be of begin .. begin + rows.size()
 /// - 1.
 template <class Row>
-[[nodiscard]] bool place_by_key(const std::vector<comm::Parcel>& parcels, GlobalId begin, GlobalId Row::*key,
-                                std::vector<Row>& rows) {
+[[nodiscard]] bool place_by_key(const std::vector<Row>& own, const std::vector<comm::Parcel>& parcels, GlobalId begin,
+                                GlobalId Row::*key, std::vector<Row>& rows) {
   std::vector<bool> there(rows.size());
   bool once = true;
-  for_each_row<Row>(parcels, [&](const Row& row) {
+  for_each_row(own, parcels, [&](const Row& row) {
     const auto k = static_cast<std::size_t>(row.*key - begin);
     once = once && !there[k];
     there[k] = true;
@@ -56,39 +58,53 @@ template <class Row>
   return once;
 }
 
-/// Collective. Each row goes to the owner of row.*key; the rows that came here, by that key (equal keys in no promised
-/// order). Cost: O(rows) if every key of this rank's block came once, else they are sorted.
+/// Takes the rows that others write out of `rows`, a parcel for each of them.
 template <class Row>
-[[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
-                                       GlobalId Row::*key) {
-  static_assert(std::is_trivially_copyable_v<Row>);
+[[nodiscard]] std::vector<comm::Parcel> take_foreign(Rank me, const IdBlocks& blocks, std::vector<Row>& rows,
+                                                     GlobalId Row::*key) {
   std::map<Rank, std::size_t> counts;
-  for (const Row& row : rows) ++counts[blocks.owner(row.*key)];
+  for (const Row& row : rows) {
+    if (const Rank to = blocks.owner(row.*key); to != me) ++counts[to];
+  }
   std::vector<comm::Parcel> parcels;
   std::map<Rank, std::byte*> next;
   for (const auto& [to, count] : counts) {
     parcels.push_back({to, std::vector<std::byte>(count * sizeof(Row))});
     next[to] = parcels.back().bytes.data();
   }
-  for (const Row& row : rows) {
-    std::byte*& place = next[blocks.owner(row.*key)];
+  if (parcels.empty()) return parcels;
+  const auto foreign = [&](const Row& row) {
+    const Rank to = blocks.owner(row.*key);
+    if (to == me) return false;
+    std::byte*& place = next[to];
     std::memcpy(place, &row, sizeof(Row));
     place += sizeof(Row);
-  }
-  rows = {};  // the memory is needed for what comes
-  const std::vector<comm::Parcel> incoming = comm::exchange(comm, std::move(parcels), comm::Purpose::output);
-  std::size_t bytes = 0;
-  for (const comm::Parcel& parcel : incoming) bytes += parcel.bytes.size();
-  rows.resize(bytes / sizeof(Row));
+    return true;
+  };
+  std::erase_if(rows, foreign);
+  return parcels;
+}
+
+/// Collective. Each row goes to the owner of row.*key; the rows that came here, by that key (equal keys in no promised
+/// order). Cost: O(rows) if every key of this rank's block came once, else they are sorted.
+template <class Row>
+[[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
+                                       GlobalId Row::*key) {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  const std::vector<comm::Parcel> incoming =
+      comm::exchange(comm, take_foreign(comm.rank(), blocks, rows, key), comm::Purpose::output);
+  std::size_t count = rows.size();
+  for (const comm::Parcel& parcel : incoming) count += parcel.bytes.size() / sizeof(Row);
+  std::vector<Row> all(count);
   const GlobalId begin = blocks.begin(comm.rank());
-  if (static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin &&
-      place_by_key(incoming, begin, key, rows)) {
-    return rows;
+  if (static_cast<GlobalId>(count) == blocks.begin(comm.rank() + 1) - begin &&
+      place_by_key(rows, incoming, begin, key, all)) {
+    return all;
   }
   std::size_t at = 0;
-  for_each_row<Row>(incoming, [&](const Row& row) { rows[at++] = row; });
-  std::sort(rows.begin(), rows.end(), [key](const Row& a, const Row& b) { return a.*key < b.*key; });
-  return rows;
+  for_each_row(rows, incoming, [&](const Row& row) { all[at++] = row; });
+  std::sort(all.begin(), all.end(), [key](const Row& a, const Row& b) { return a.*key < b.*key; });
+  return all;
 }
 
 }  // namespace packmpi::output
