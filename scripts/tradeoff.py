@@ -37,11 +37,16 @@ ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","perio
         "particles.density": "2650.0", "particles.youngs_modulus": "1e9", "contact.friction": "0.5", "contact.damping_ratio": "0.3",
         "drag.coefficient": "0.0", "jamming.gravity": "9.81",
         "particles.radius": '{distribution="lognormal",median=0.1,log_sd=0.2,min=0.065,max=0.15,weighting="mass"}'}
-# Another one, to confirm: a uniform grading by mass, lighter, softer, less rough, less damped, a higher pile.
+# Another one: a uniform grading by mass, lighter, softer, less rough, less damped, a higher pile.
 GRAVEL = {"container.size": "[2.5,2.0,2.0]", "container.boundary": '["periodic","wall"]', "layers.maximum": "10", "layers.thickness": "0.5",
           "particles.density": "1800.0", "particles.youngs_modulus": "3e8", "particles.poisson_ratio": "0.2", "contact.friction": "0.35",
           "contact.damping_ratio": "0.2", "drag.coefficient": "0.0", "jamming.gravity": "9.81",
           "particles.radius": '{distribution="uniform",min=0.04,max=0.09,weighting="mass"}'}
+# And one to confirm what the others led to.
+COBBLES = {"container.size": "[2.2,2.2,2.4]", "layers.maximum": "14", "layers.thickness": "0.4", "particles.density": "2000.0",
+           "particles.youngs_modulus": "4e8", "contact.friction": "0.3", "contact.damping_ratio": "0.15", "drag.coefficient": "0.0",
+           "jamming.gravity": "8.0",
+           "particles.radius": '{distribution="bidisperse",small=0.06,large=0.09,large_share=0.5,weighting="mass"}'}
 
 # name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
 # `fidelity` alone says how a pack is made.
@@ -58,7 +63,8 @@ SCENES = {
     "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
     "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
     "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; used to choose \"auto\" for friction"),
-    "gravel": ("paper_5_3", GRAVEL, 5, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81; used after everything was settled"),
+    "gravel": ("paper_5_3", GRAVEL, 5, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81; used to do without a protocol for stiff scenes"),
+    "cobbles": ("paper_5_3", COBBLES, 5, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8; used after everything was settled"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
 WITHOUT_PRESETS = {"tiny_on"}

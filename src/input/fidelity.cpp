@@ -34,7 +34,7 @@ bool flat(const Input& in) { return in.container.dimension == 2; }
 /// Modulus while layers settle [Pa]; that of the particles if it would gain little to soften them. Soft layers without
 /// spin settle too densely for "balanced".
 double soft_modulus(const Input& in) {
-  constexpr double worth_it = 0.5;
+  constexpr double worth_it = 0.75;
   const double hard = in.particles.youngs_modulus;
   if (!is_draft(in) && !in.dynamics.rotation) return hard;
   const Softness softness = is_draft(in) && is_graded(in) && !flat(in) ? Softness{0.03, 1.5e3} : Softness{0.1, 5e3};
@@ -50,9 +50,8 @@ Protocol draft(const Input& in) {
   return {.duration = 0.8, .speed = 0.75, .window = 4, .thaw = 0.26};
 }
 
-Protocol balanced(const Input& in, bool soft) {
+Protocol balanced(const Input& in) {
   if (!in.dynamics.rotation) return {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58};
-  if (!soft) return {.duration = 1.1, .speed = 0.5, .window = 0, .thaw = 0.4};
   if (flat(in)) return {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9};
   return {.duration = 1.0, .speed = 0.5, .window = 5, .thaw = 0.6};
 }
@@ -74,7 +73,7 @@ std::vector<PresetValue> preset(const Input& in) {
   const double h = in.layers.thickness, g = in.jamming.gravity;
   const double modulus = soft_modulus(in);
   const bool soft = modulus < in.particles.youngs_modulus;
-  const Protocol protocol = is_draft(in) ? draft(in) : balanced(in, soft);
+  const Protocol protocol = is_draft(in) ? draft(in) : balanced(in);
   const double fall = std::sqrt(2.0 * h / g);
   const double layers = in.container.size.back() / h;
   const double least_thaw = is_draft(in) ? 1.0 : 2.4;  // particles harden in half of it
