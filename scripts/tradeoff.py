@@ -64,7 +64,7 @@ SCENES = {
     "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
     "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; used to choose \"auto\" for friction"),
     "gravel": ("paper_5_3", GRAVEL, 5, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81; used to do without a protocol for stiff scenes"),
-    "cobbles": ("paper_5_3", COBBLES, 5, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8; used after everything was settled"),
+    "cobbles": ("paper_5_3", COBBLES, 10, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8; used after everything was settled"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
 WITHOUT_PRESETS = {"tiny_on"}
