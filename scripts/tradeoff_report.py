@@ -93,11 +93,15 @@ def difference(references, rows, noise, key, digits):
             f"{noise.of_difference(key, rows, references):.{digits}f}")
 
 
+def times(factor):
+    return f"{factor:.1f}" if factor > 0.1 else f"{factor:.2g}"
+
+
 def measures(references, rows, noise):
     """The cells every table has: differences from the reference, and what was saved."""
     return (f"{difference(references, rows, noise, 'phi_bulk', 4)} | {difference(references, rows, noise, 'coordination', 2)} | "
             f"{mean(rows, 'mean_overlap') / mean(references, 'mean_overlap'):.2f} | "
-            f"{ratio(references, rows, 'particle_steps'):.1f} | {ratio(references, rows, 'cpu_seconds'):.1f}")
+            f"{ratio(references, rows, 'particle_steps'):.1f} | {times(ratio(references, rows, 'cpu_seconds'))}")
 
 
 def reference_words(rows):
