@@ -7,7 +7,7 @@ Beds: settled beds of the paper's spheres between walls (rotation on, time step 
 tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
 of the mean); particle-steps a second, everything in. Brick: example 5.3 from nothing to the twelfth layer: wall time, and
 the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one. --quick: small
-scenes, to try the script. The tables replace the part of the document between its "compare" markers. About 22 minutes.
+scenes, to try the script. The tables replace the part of the document between its "compare" markers. 22 to 60 minutes.
 """
 import argparse
 import re

@@ -214,7 +214,7 @@ def plot(path, rows, knobs, scenes, reference):
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter("")
         axes.set_xlabel("times fewer particle-steps than \"paper\"")
-        axes.legend(fontsize=7, loc="lower left" if axes is left else "lower right", ncols=1 if axes is left else 2)
+        axes.legend(fontsize=7, loc="lower left" if axes is left else "upper right", ncols=1 if axes is left else 2)
     left.set_ylabel("phi_bulk - that of \"paper\"")
     figure.tight_layout()
     figure.savefig(path, dpi=110)
