@@ -26,14 +26,14 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<Real<F>>& b, int p, Loc
   const double* record = data.records + std::int64_t{particle} * layout.stride;
   const Plane plane = plane_of<F>(data, wall);
   for (int a = F.dimension; a < layout.stride; ++a) {  // places but the position
-    if (a < b.places) b.place[a][p] = record[a];
-    if (a >= b.places) b.in[a - b.places][p] = static_cast<Real<F>>(record[a]);
+    if (a < Block<Real<F>>::places) b.place[a][p] = record[a];
+    if (a >= Block<Real<F>>::places) b.in[a - Block<Real<F>>::places][p] = static_cast<Real<F>>(record[a]);
   }
   for (int a = 0; a < F.dimension; ++a) {
     b.place[a][p] = a == plane.axis ? plane.sign : 0.0;
-    b.in[layout.velocity - b.places + a][p] = -static_cast<Real<F>>(record[layout.velocity + a]);
+    b.in[layout.velocity - Block<Real<F>>::places + a][p] = -static_cast<Real<F>>(record[layout.velocity + a]);
   }
-  b.place[b.places][p] = plane.offset - plane.sign * record[plane.axis];
+  b.place[Block<Real<F>>::places][p] = plane.offset - plane.sign * record[plane.axis];
 }
 
 template <Features F>

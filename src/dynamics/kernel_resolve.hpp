@@ -43,8 +43,8 @@ template <Features F>
 PACKMPI_INLINE void contact(Block<Real<F>>& b, int p, const Constants<Real<F>>& c, const Reduced<Real<F>>& reduced,
                             const Vector<Real<F>>& n, Real<F> overlap, double scale) {
   constexpr particles::Layout layout = F.layout();
-  constexpr int v = layout.velocity - b.places;
-  constexpr int s = F.rotation ? layout.spin - b.places : v;
+  constexpr int v = layout.velocity - Block<Real<F>>::places;
+  constexpr int s = F.rotation ? layout.spin - Block<Real<F>>::places : v;
   if constexpr (F.dimension == 3) {
     put<F>(b, p,
            contact_3d<F, Real<F>>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
@@ -60,10 +60,10 @@ PACKMPI_INLINE void contact(Block<Real<F>>& b, int p, const Constants<Real<F>>& 
 template <Features F>
 PACKMPI_INLINE Real<F> curvature_at(const Block<Real<F>>& b, int p) {
   constexpr int field = F.layout().curvature;
-  if constexpr (field < b.places) {
+  if constexpr (field < Block<Real<F>>::places) {
     return static_cast<Real<F>>(b.place[field][p]);
   } else {
-    return b.in[field - b.places][p];
+    return b.in[field - Block<Real<F>>::places][p];
   }
 }
 
@@ -133,7 +133,7 @@ PACKMPI_INLINE void resolve_walls(Block<Real<F>>& b, const Constants<Real<F>>& c
     const Vector<R> n = {static_cast<R>(b.place[0][p]), static_cast<R>(b.place[1][p]),
                          F.dimension == 3 ? static_cast<R>(b.place[2][p]) : R{0}};
     const double radius = b.place[layout.radius][p];
-    const double gap = radius - b.place[b.places][p];
+    const double gap = radius - b.place[Block<Real<F>>::places][p];
     const R overlap = static_cast<R>(gap < 0.0 ? 0.0 : gap);
     Reduced<R> reduced = {k.reduced_radius, k.reduced_mass};
     if constexpr (F.graded) reduced = reduced_of_wall<R>(k.mass_factor, curvature_at<F>(b, p), static_cast<R>(radius));
