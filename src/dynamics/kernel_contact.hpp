@@ -2,6 +2,8 @@
 /// Exactly antisymmetric: exchanging the ends negates the force and keeps the moment, bit for bit.
 /// Real is double, or float in scenes of mixed precision.
 #pragma once
+#include <type_traits>
+
 #include "dynamics/kernel_lanes.hpp"
 #include "dynamics/law.hpp"
 

@@ -3,7 +3,6 @@
 /// path.
 #pragma once
 #include <cstdint>
-#include <type_traits>
 
 #define PACKMPI_INLINE inline __attribute__((always_inline))
 

@@ -56,7 +56,7 @@ PACKMPI_INLINE void contact(Block<Real<F>>& b, int p, const Constants<Real<F>>& 
   }
 }
 
-/// Sum of radii and curvatures of entry p, or of the one particle at a wall.
+/// Curvature of entry p: the sum over the pair, or that of the particle at a wall.
 template <Features F>
 PACKMPI_INLINE Real<F> curvature_at(const Block<Real<F>>& b, int p) {
   constexpr int field = F.layout().curvature;
@@ -67,13 +67,14 @@ PACKMPI_INLINE Real<F> curvature_at(const Block<Real<F>>& b, int p) {
   }
 }
 
-/// Normal, and overlap before it is cut at zero, of two centres at (x, y, z), whose radii add up to `radius`.
+/// Where two particles meet.
 template <class R>
 struct Touch {
   Vector<R> normal;
-  double gap;
+  double gap;  // the overlap; negative: they do not touch
 };
 
+/// Of two particles at a distance of (x, y, z), whose square is given; their radii add up to `radius`.
 PACKMPI_INLINE Touch<double> touch(double x, double y, double z, double square, double radius) {
   const double distance = root(square + tiny<double>());
   const double inverse = 1.0 / distance;

@@ -73,18 +73,18 @@ std::uint64_t write_some(Descriptor& disk, const h5::Column& column, std::int64_
 std::vector<std::int64_t> write_rows(const std::string& path, const std::vector<h5::Column>& plan,
                                      const std::vector<std::int64_t>& places) {
   constexpr std::size_t at_a_time = 4096;
-  std::vector<std::int64_t> digests(plan.size());
+  std::vector<std::uint64_t> digests(plan.size());  // these sums wrap
   Descriptor disk(path, O_WRONLY);
   std::size_t most = 0;
   for (const h5::Column& column : plan) most = std::max<std::size_t>(most, column.slab.count);
   for (std::size_t first = 0; first < most; first += at_a_time) {
     for (std::size_t k = 0; k < plan.size(); ++k) {
-      digests[k] += static_cast<std::int64_t>(write_some(disk, plan[k], places[k], first, at_a_time));
+      digests[k] += write_some(disk, plan[k], places[k], first, at_a_time);
     }
   }
   disk.sync();
   disk.close();
-  return digests;
+  return {digests.begin(), digests.end()};
 }
 
 /// The places of all columns' rows, on every rank.

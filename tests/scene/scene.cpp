@@ -41,6 +41,23 @@ TEST(Scene, AutoTakesAFifthOfTheContactDuration) {
   EXPECT_DOUBLE_EQ(build(in).time_step, expected);
 }
 
+TEST(Scene, AutoIsSmallerForRoughParticlesWhoseSlipMayLastAStep) {
+  input::Input in = small_input(3, 0.2, 0.02);
+  in.dynamics.time_step.reset();
+  const auto step = [&in](double friction, double wall_friction, input::Regularisation kind) {
+    in.contact.friction = friction;
+    in.contact.wall_friction = wall_friction;
+    in.contact.regularisation = kind;
+    return build(in).time_step;
+  };
+  using enum input::Regularisation;
+  const double smooth = step(0.2, 0.2, stop);
+  EXPECT_DOUBLE_EQ(step(0.0, 0.0, stop), smooth);
+  EXPECT_NEAR(step(0.5, 0.5, stop), smooth / std::pow(2.5, 0.4), 1e-12 * smooth);
+  EXPECT_EQ(step(0.2, 0.5, stop), step(0.5, 0.2, stop));
+  EXPECT_DOUBLE_EQ(step(0.5, 0.5, none), smooth);
+}
+
 TEST(Scene, RefusesAStepBeyondEquation23AndTakesOneBelow) {
   input::Input in = small_input(3, 0.2, 0.02);
   in.dynamics.time_step = 2.4e-4;
