@@ -1,6 +1,7 @@
 #include "dynamics/kernel.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -74,6 +75,11 @@ const Build& chosen_build() {
 }
 
 }  // namespace
+
+StepReport together(const StepReport& a, const StepReport& b) {
+  const auto larger = [](double x, double y) { return std::isnan(x) || x > y ? x : y; };
+  return {larger(a.max_speed, b.max_speed), larger(a.max_force, b.max_force), a.in_range && b.in_range};
+}
 
 Kernel select_kernel(const scene::Features& features) {
   const Build& build = chosen_build();

@@ -21,10 +21,12 @@ namespace packmpi::dynamics {
   return layout.dimension == 3 && layout.rotation ? 8 : 4;
 }
 
-/// Everything a kernel reads and writes. Pointers are not owned.
+/// Everything a kernel reads and writes. Pointers are not owned. A step may be done in several calls, one for each part
+/// of the slots in ascending order: the lists are then those of the part, and the ring is left alone between the calls.
 struct StepData {
   double* records;  ///< Store::records(); the owned are advanced in place, ghosts only read
   LocalIndex owned;
+  LocalIndex begin, end;    ///< slots of this call: all pairs whose first is one of them, all walls of them
   const LocalIndex* first;  ///< pair list, see neighbor::PairList
   const LocalIndex* second;
   std::int64_t pairs;
@@ -32,7 +34,7 @@ struct StepData {
   const neighbor::Wall* wall;
   std::int64_t walls;
   std::int64_t* ring;  ///< accumulators of slot i at ring[(i & ring_mask) * accumulators_of(layout)];
-                       ///< zero (or prefilled, near field) on entry, zero on return. 64-byte aligned.
+                       ///< zero (or prefilled, near field) before a step, zero after it. 64-byte aligned.
   /// Slots - 1; slots a power of two >= window (see ring_slots), or >= owned when prefilled. One more slot follows
   /// them: a dump for what ghosts would get.
   std::int64_t ring_mask;
@@ -59,6 +61,9 @@ struct StepReport {
   double max_force = 0.0;  ///< [N] the largest normal force of a contact; NaN if one is not finite
   bool in_range = true;    ///< false: a force left the range of the integer sums, the state is garbage
 };
+
+/// What a step tells that was done in two parts.
+[[nodiscard]] StepReport together(const StepReport& a, const StepReport& b);
 
 /// A kernel for the features; the pointer stays valid for ever. Local.
 using Kernel = StepReport (*)(const StepData&);

@@ -18,10 +18,11 @@ struct Stepper {
   double scale = 1.0 / data.force_quantum;
   Tally tally{};
   Block<Real<F>> block;  // 30 KB, on the stack
-  LocalIndex done = 0;
+  LocalIndex done;
   std::int64_t walls_done = 0;
 
-  explicit PACKMPI_INLINE Stepper(const StepData& step_data) : data(step_data) {}  // leaves the block as it is
+  explicit PACKMPI_INLINE Stepper(const StepData& step_data)  // leaves the block as it is
+      : data(step_data), done(step_data.begin) {}
 
   /// Walls and integration of all particles below `limit`, a ring's length at a time: beyond it walls would meet slots
   /// in use.
@@ -40,7 +41,7 @@ struct Stepper {
 
   PACKMPI_INLINE void run() {
     for (std::int64_t p = 0;; p += block.count) {
-      finish(p < data.pairs ? data.first[p] : data.owned);
+      finish(p < data.pairs ? data.first[p] : data.end);
       if (p >= data.pairs) break;
       take(data, p, done, block);
       pack<F>(data.records, block);

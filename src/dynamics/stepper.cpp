@@ -17,6 +17,19 @@ Vec3 gravity_of(const scene::Scene& scene) {
   return g;
 }
 
+// What a step does of a leg.
+StepData part_of(StepData whole, const neighbor::Leg& before, const neighbor::Leg& leg) {
+  whole.begin = before.end;
+  whole.end = leg.end;
+  whole.first += before.pairs_end;
+  whole.second += before.pairs_end;
+  whole.pairs = leg.pairs_end - before.pairs_end;
+  whole.wall_particle += before.walls_end;
+  whole.wall += before.walls_end;
+  whole.walls = leg.walls_end - before.walls_end;
+  return whole;
+}
+
 }  // namespace
 
 Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene) : comm_(&comm), scene_(&scene) {
@@ -45,10 +58,12 @@ void Stepper::advance(particles::Store& store, neighbor::Neighborhood& neighborh
     ++since_look_;
     const neighbor::Alarm alarm = neighborhood.follow(store, last_.max_speed, stage_.time_step, alarm_of_step(store));
     if (alarm == neighbor::Alarm::none) continue;
+    neighborhood.arrive(store);
     const Moment now{start.layer, start.step + step + 1, start.time + static_cast<double>(step + 1) * stage_.time_step};
     if (alarm == neighbor::Alarm::fault) report(inspected(store, neighborhood), now);
     check(store, neighborhood, now);
   }
+  neighborhood.arrive(store);
 }
 
 void Stepper::check(const particles::Store& store, const neighbor::Neighborhood& neighborhood, const Moment& now) {
@@ -81,12 +96,35 @@ Inspected Stepper::inspected(const particles::Store& store, const neighbor::Neig
 
 void Stepper::advance_one(particles::Store& store, neighbor::Neighborhood& neighborhood) {
   if (implicit_) {
+    neighborhood.arrive(store);
     last_ = implicit_->step(law_, store, neighborhood, stage_.time_step);
     return;
   }
   fit_ring(store, neighborhood);
-  if (scene_->features.near_field) add_near_forces(store, neighborhood);
-  last_ = kernel_(data(store, neighborhood));
+  if (scene_->features.near_field) {
+    neighborhood.arrive(store);
+    add_near_forces(store, neighborhood);
+  }
+  last_ = sweep(store, neighborhood);
+}
+
+// Ghosts travel meanwhile: those of the first half from the middle of a step to the next step's beginning, those of the
+// second from its end to the next one's middle, through the reduction (Neighborhood::follow).
+StepReport Stepper::sweep(particles::Store& store, neighbor::Neighborhood& neighborhood) {
+  const StepData whole = data(store, neighborhood);
+  StepReport report;
+  neighbor::Leg done{};
+  for (const neighbor::Leg& leg : neighborhood.sweep()) {
+    for (const neighbor::Half half : neighbor::halves) {
+      if (leg.needs[static_cast<std::size_t>(half)]) neighborhood.end_refresh(half, store);
+    }
+    report = together(report, kernel_(part_of(whole, done, leg)));
+    for (const neighbor::Half half : neighbor::halves) {
+      if (leg.sends[static_cast<std::size_t>(half)]) neighborhood.begin_refresh(half, store);
+    }
+    done = leg;
+  }
+  return report;
 }
 
 // The ring holds the window of the half list; with a near field, whose forces come first, it holds every particle.
@@ -107,6 +145,8 @@ StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& ne
   return StepData{
       .records = store.records(),
       .owned = store.owned(),
+      .begin = 0,
+      .end = store.owned(),
       .first = pairs.first.data(),
       .second = pairs.second.data(),
       .pairs = static_cast<std::int64_t>(pairs.first.size()),

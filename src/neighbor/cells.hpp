@@ -10,8 +10,8 @@
 namespace packmpi::neighbor {
 
 /// The columns of a rank with their surroundings. Made anew when the ownership changes. Local columns are numbered: own
-/// columns first, rows along the shorter extent fastest (that keeps the window of the half list small), then the ghost
-/// columns.
+/// columns first, rows along the shorter extent fastest (that keeps the window of the half list small), in every other
+/// part from high to low along the longer one; then the ghost columns.
 class LocalColumns {
  public:
   explicit LocalColumns(const scene::Ownership& ownership, Rank rank);

@@ -36,7 +36,8 @@ LocalColumns::LocalColumns(const scene::Ownership& ownership, Rank rank) : nx_(o
   for (auto& [key, columns] : borders) borders_.push_back({key.second, key.first, std::move(columns)});
 }
 
-// Own columns sorted so that runs along the shorter extent are contiguous.
+// Own columns sorted so that runs along the shorter extent are contiguous. Every other part goes backwards along the
+// longer one: two parts that touch across it then meet in the same half of a step (Halo).
 void LocalColumns::number_own(const scene::Ownership& ownership) {
   const std::span<const geometry::ColumnIndex> own = ownership.columns();
   global_.assign(own.begin(), own.end());
@@ -48,9 +49,12 @@ void LocalColumns::number_own(const scene::Ownership& ownership) {
   x0_ = x(xl), y0_ = y(yl);
   width_ = x(xh) - x0_ + 1;
   depth_ = y(yh) - y0_ + 1;
-  if (depth_ < width_) {
-    std::ranges::sort(global_, [&](auto a, auto b) { return std::pair{x(a), y(a)} < std::pair{x(b), y(b)}; });
-  }
+  const bool along_x = depth_ < width_;
+  const bool backwards = ownership.part()[along_x ? 0 : 1] % 2 == 1;
+  std::ranges::sort(global_, {}, [&](geometry::ColumnIndex c) {
+    const int slow = along_x ? x(c) : y(c);
+    return std::pair{backwards ? -slow : slow, along_x ? y(c) : x(c)};
+  });
   own_lookup_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(depth_), -1);
   for (std::size_t k = 0; k < global_.size(); ++k) {
     own_lookup_[cell_of(x(global_[k]) - x0_, y(global_[k]) - y0_)] = static_cast<int>(k);

@@ -3,8 +3,10 @@
 #include <petscsf.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <span>
+#include <string>
 
 #include "base/grow.hpp"
 #include "comm/datatype.hpp"
@@ -17,13 +19,18 @@ void check(PetscErrorCode code) {
     throw Error(ExitCode::io_failure, "PETSc could not exchange ghosts (error " + std::to_string(code) + ")");
 }
 
-// What travels at a rebuild: where the sender keeps the first of these in its send buffer, then ids, then records.
-std::vector<std::byte> pack(const particles::Store& store, std::span<const LocalIndex> slots, std::int64_t first_root) {
+// What travels at a rebuild before the particles, whose first `early` are of the first half.
+struct Heading {
+  std::array<std::int64_t, 2> first_root;  // where the sender keeps the first of them in its send buffers
+  std::int64_t early;
+};
+
+std::vector<std::byte> pack(const particles::Store& store, std::span<const LocalIndex> slots, const Heading& heading) {
   const std::size_t record = store.layout().record_bytes();
-  std::vector<std::byte> bytes(sizeof first_root + slots.size() * (sizeof(GlobalId) + record));
+  std::vector<std::byte> bytes(sizeof heading + slots.size() * (sizeof(GlobalId) + record));
   std::byte* out = bytes.data();
-  std::memcpy(out, &first_root, sizeof first_root);
-  out += sizeof first_root;
+  std::memcpy(out, &heading, sizeof heading);
+  out += sizeof heading;
   for (const LocalIndex slot : slots) {
     std::memcpy(out, &store.ids()[static_cast<std::size_t>(slot)], sizeof(GlobalId));
     out += sizeof(GlobalId);
@@ -31,6 +38,15 @@ std::vector<std::byte> pack(const particles::Store& store, std::span<const Local
     out += record;
   }
   return bytes;
+}
+
+// Ids and records of a parcel's particles, into the ghosts from `slot` on.
+void unpack(std::span<const std::byte> bytes, particles::Store& store, LocalIndex slot) {
+  const std::size_t record = store.layout().record_bytes();
+  for (const std::byte* in = bytes.data(); in < bytes.data() + bytes.size(); in += sizeof(GlobalId) + record, ++slot) {
+    std::memcpy(&store.ids()[static_cast<std::size_t>(slot)], in, sizeof(GlobalId));
+    std::memcpy(store.record(slot), in + sizeof(GlobalId), record);
+  }
 }
 
 // The live doubles of a record: position, velocity, spin are each contiguous in it.
@@ -52,73 +68,102 @@ void scatter_live(const particles::Layout& layout, const double* in, double* rec
 
 }  // namespace
 
-struct Halo::Graph {
-  PetscSF sf = nullptr;
-  MPI_Datatype unit = MPI_DATATYPE_NULL;
+class Halo::Unit {
+ public:
+  explicit Unit(int live_doubles) : type_(comm::double_block(live_doubles)) {}
+  ~Unit() { comm::free_type(type_); }
+  Unit(const Unit&) = delete;
+  Unit& operator=(const Unit&) = delete;
+  [[nodiscard]] MPI_Datatype type() const noexcept { return type_; }
 
-  explicit Graph(int live_doubles) : unit(comm::double_block(live_doubles)) {}
-  ~Graph() {
-    reset();
-    comm::free_type(unit);
+ private:
+  MPI_Datatype type_;
+};
+
+class Halo::Graph {
+ public:
+  // Collective. Leaf k is root origin[k]. Nothing is sent before this rank's first leaf.
+  Graph(const comm::Comm& comm, std::size_t roots, std::vector<PetscSFNode>& origin) {
+    check(PetscSFCreate(comm.handle(), &sf_));
+    check(PetscSFSetGraph(sf_, static_cast<PetscInt>(roots), static_cast<PetscInt>(origin.size()), nullptr,
+                          PETSC_OWN_POINTER, origin.data(), PETSC_COPY_VALUES));
+    check(PetscSFSetUp(sf_));
   }
+  ~Graph() { PetscSFDestroy(&sf_); }
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
-  void reset() {
-    if (sf != nullptr) PetscSFDestroy(&sf);
+  void begin(MPI_Datatype unit, const void* roots, void* leaves) const {
+    check(PetscSFBcastBegin(sf_, unit, roots, leaves, MPI_REPLACE));
   }
+  void end(MPI_Datatype unit, const void* roots, void* leaves) const {
+    check(PetscSFBcastEnd(sf_, unit, roots, leaves, MPI_REPLACE));
+  }
+
+ private:
+  PetscSF sf_ = nullptr;
 };
 
 Halo::Halo(const comm::Comm& comm, const particles::Layout& layout)
-    : comm_(&comm), layout_(layout), graph_(std::make_unique<Graph>(layout.live_doubles())) {}
+    : comm_(&comm), layout_(layout), unit_(std::make_unique<Unit>(layout.live_doubles())) {}
 
 Halo::~Halo() = default;
 
 void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
+  assert(!under_way(Half::first) && !under_way(Half::second));
   store.set_ghosts(0);
   if (comm_->size() == 1) return;
-  send_slots_.clear();
+  for (Part& part : parts_) part.send_slot.clear(), part.messages = 0;
   std::vector<comm::Parcel> outgoing;
   for (const Sends& to : sends) {
-    outgoing.push_back({to.rank, pack(store, to.slots, static_cast<std::int64_t>(send_slots_.size()))});
-    send_slots_.insert(send_slots_.end(), to.slots.begin(), to.slots.end());
+    const auto split = std::ranges::lower_bound(to.slots, store.owned() / 2);
+    Heading heading{{}, split - to.slots.begin()};
+    for (const Half half : halves) {
+      Part& mine = part(half);
+      heading.first_root[static_cast<std::size_t>(half)] = std::ssize(mine.send_slot);
+      const auto from = half == Half::first ? to.slots.begin() : split;
+      const auto until = half == Half::first ? split : to.slots.end();
+      mine.send_slot.insert(mine.send_slot.end(), from, until);
+      mine.messages += from < until ? 1 : 0;
+    }
+    outgoing.push_back({to.rank, pack(store, to.slots, heading)});
   }
-  messages_per_refresh_ = std::ranges::count_if(sends, [](const Sends& to) { return !to.slots.empty(); });
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), comm::Purpose::halo);
 
-  const std::size_t record = layout_.record_bytes();
-  comm::Traffic setup;              // what PetscSFSetUp sends: to each origin how many ghosts, then which
-  std::vector<PetscSFNode> origin;  // where each ghost lives: rank and place in that rank's send buffer
+  for (Part& part : parts_) part.arrival_slot.clear();
+  std::array<std::vector<PetscSFNode>, 2> origin;  // where each ghost lives: rank and place in its send buffer
   for (const comm::Parcel& parcel : incoming) {
-    std::int64_t first_root = 0;
-    std::memcpy(&first_root, parcel.bytes.data(), sizeof first_root);
-    const std::size_t count = (parcel.bytes.size() - sizeof first_root) / (sizeof(GlobalId) + record);
-    const auto before = static_cast<LocalIndex>(origin.size());
-    store.set_ghosts(before + static_cast<LocalIndex>(count));
-    if (count > 0) {
-      setup.messages += 2;
-      setup.bytes += static_cast<std::int64_t>((1 + count) * sizeof(PetscInt));
-    }
-    const std::byte* in = parcel.bytes.data() + sizeof first_root;
-    for (std::size_t k = 0; k < count; ++k) {
-      const LocalIndex slot = store.owned() + before + static_cast<LocalIndex>(k);
-      std::memcpy(&store.ids()[static_cast<std::size_t>(slot)], in, sizeof(GlobalId));
-      std::memcpy(store.record(slot), in + sizeof(GlobalId), record);
-      in += sizeof(GlobalId) + record;
-      origin.push_back({parcel.rank, static_cast<PetscInt>(first_root + static_cast<std::int64_t>(k))});
+    Heading heading{};
+    std::memcpy(&heading, parcel.bytes.data(), sizeof heading);
+    const std::span particles = std::span(parcel.bytes).subspan(sizeof heading);
+    const auto count = static_cast<std::int64_t>(particles.size() / (sizeof(GlobalId) + layout_.record_bytes()));
+    const LocalIndex slot = store.total();
+    store.set_ghosts(store.ghosts() + static_cast<LocalIndex>(count));
+    unpack(particles, store, slot);
+    for (std::int64_t k = 0; k < count; ++k) {
+      const std::size_t half = k < heading.early ? 0 : 1;
+      const std::int64_t root = heading.first_root[half] + (half == 0 ? k : k - heading.early);
+      origin[half].push_back({parcel.rank, static_cast<PetscInt>(root)});
+      parts_[half].arrival_slot.push_back(slot + static_cast<LocalIndex>(k));
     }
   }
 
-  graph_->reset();
-  check(PetscSFCreate(comm_->handle(), &graph_->sf));
-  check(PetscSFSetGraph(graph_->sf, static_cast<PetscInt>(send_slots_.size()), static_cast<PetscInt>(origin.size()),
-                        nullptr, PETSC_OWN_POINTER, origin.data(), PETSC_COPY_VALUES));
-  check(PetscSFSetUp(graph_->sf));
-  comm_->count(comm::Purpose::halo, setup);
   const auto live = static_cast<std::size_t>(layout_.live_doubles());
-  resize_tightly(send_buffer_, send_slots_.size() * live);
-  resize_tightly(receive_buffer_, origin.size() * live);
-  resize_tightly(arrival_slot_, origin.size());
-  for (std::size_t k = 0; k < origin.size(); ++k) arrival_slot_[k] = store.owned() + static_cast<LocalIndex>(k);
+  for (const Half half : halves) {
+    Part& mine = part(half);
+    std::vector<PetscSFNode>& from = origin[static_cast<std::size_t>(half)];
+    mine.graph = std::make_unique<Graph>(*comm_, mine.send_slot.size(), from);
+    comm::Traffic setup;  // what PetscSFSetUp sends: to each origin how many ghosts, then which
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      if (k == 0 || from[k].rank != from[k - 1].rank) {
+        setup.messages += 2;
+        setup.bytes += static_cast<std::int64_t>(sizeof(PetscInt));
+      }
+      setup.bytes += static_cast<std::int64_t>(sizeof(PetscInt));
+    }
+    comm_->count(comm::Purpose::halo, setup);
+    resize_tightly(mine.send_buffer, mine.send_slot.size() * live);
+    resize_tightly(mine.receive_buffer, from.size() * live);
+  }
 }
 
 void Halo::order_ghosts(particles::Store& store, const std::vector<LocalIndex>& place) {
@@ -131,39 +176,67 @@ void Halo::order_ghosts(particles::Store& store, const std::vector<LocalIndex>& 
     const LocalIndex slot = store.owned() + place[k];
     std::copy_n(records.data() + k * stride, stride, store.record(slot));
     store.ids()[static_cast<std::size_t>(slot)] = ids[k];
-    arrival_slot_[k] = slot;
+  }
+  for (Part& part : parts_) {
+    for (LocalIndex& slot : part.arrival_slot) {
+      slot = store.owned() + place[static_cast<std::size_t>(slot - store.owned())];
+    }
   }
 }
 
-void Halo::refresh(particles::Store& store) {
+void Halo::begin(Half half, const particles::Store& store) {
   if (comm_->size() == 1) return;
+  Part& mine = part(half);
+  assert(!mine.under_way);
   const auto live = static_cast<std::size_t>(layout_.live_doubles());
-  for (std::size_t k = 0; k < send_slots_.size(); ++k) {
-    gather_live(layout_, store.record(send_slots_[k]), send_buffer_.data() + k * live);
+  for (std::size_t k = 0; k < mine.send_slot.size(); ++k) {
+    gather_live(layout_, store.record(mine.send_slot[k]), mine.send_buffer.data() + k * live);
   }
-  check(PetscSFBcastBegin(graph_->sf, graph_->unit, send_buffer_.data(), receive_buffer_.data(), MPI_REPLACE));
-  check(PetscSFBcastEnd(graph_->sf, graph_->unit, send_buffer_.data(), receive_buffer_.data(), MPI_REPLACE));
-  for (std::size_t k = 0; k < arrival_slot_.size(); ++k) {
-    scatter_live(layout_, receive_buffer_.data() + k * live, store.record(arrival_slot_[k]));
-  }
+  mine.graph->begin(unit_->type(), mine.send_buffer.data(), mine.receive_buffer.data());
+  mine.under_way = true;
   comm_->count(comm::Purpose::ghosts,
-               {messages_per_refresh_, static_cast<std::int64_t>(send_buffer_.size() * sizeof(double))});
+               {mine.messages, static_cast<std::int64_t>(mine.send_buffer.size() * sizeof(double))});
+}
+
+void Halo::end(Half half, particles::Store& store) {
+  Part& mine = part(half);
+  if (!mine.under_way) return;
+  mine.graph->end(unit_->type(), mine.send_buffer.data(), mine.receive_buffer.data());
+  mine.under_way = false;
+  const auto live = static_cast<std::size_t>(layout_.live_doubles());
+  for (std::size_t k = 0; k < mine.arrival_slot.size(); ++k) {
+    scatter_live(layout_, mine.receive_buffer.data() + k * live, store.record(mine.arrival_slot[k]));
+  }
 }
 
 void Halo::share(std::span<std::int64_t> values) const {
   if (comm_->size() == 1) return;
-  std::vector<std::int64_t> out(send_slots_.size()), in(arrival_slot_.size());
-  for (std::size_t k = 0; k < out.size(); ++k) out[k] = values[static_cast<std::size_t>(send_slots_[k])];
-  check(PetscSFBcastBegin(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
-  check(PetscSFBcastEnd(graph_->sf, MPI_INT64_T, out.data(), in.data(), MPI_REPLACE));
-  for (std::size_t k = 0; k < in.size(); ++k) values[static_cast<std::size_t>(arrival_slot_[k])] = in[k];
-  comm_->count(comm::Purpose::ghosts,
-               {messages_per_refresh_, static_cast<std::int64_t>(out.size() * sizeof(std::int64_t))});
+  for (const Part& part : parts_) {
+    std::vector<std::int64_t> out(part.send_slot.size()), in(part.arrival_slot.size());
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = values[static_cast<std::size_t>(part.send_slot[k])];
+    part.graph->begin(MPI_INT64_T, out.data(), in.data());
+    part.graph->end(MPI_INT64_T, out.data(), in.data());
+    for (std::size_t k = 0; k < in.size(); ++k) values[static_cast<std::size_t>(part.arrival_slot[k])] = in[k];
+    comm_->count(comm::Purpose::ghosts, {part.messages, static_cast<std::int64_t>(out.size() * sizeof(std::int64_t))});
+  }
+}
+
+LocalIndex Halo::ghosts() const noexcept {
+  return static_cast<LocalIndex>(parts_[0].arrival_slot.size() + parts_[1].arrival_slot.size());
+}
+
+LocalIndex Halo::ready(Half half) const noexcept {
+  const std::vector<LocalIndex>& slots = part(half).send_slot;
+  return slots.empty() ? 0 : *std::ranges::max_element(slots) + 1;
 }
 
 std::size_t Halo::bytes() const noexcept {
-  return (send_buffer_.capacity() + receive_buffer_.capacity()) * sizeof(double) +
-         (send_slots_.capacity() + arrival_slot_.capacity()) * sizeof(LocalIndex);
+  std::size_t total = 0;
+  for (const Part& part : parts_) {
+    total += (part.send_buffer.capacity() + part.receive_buffer.capacity()) * sizeof(double) +
+             (part.send_slot.capacity() + part.arrival_slot.capacity()) * sizeof(LocalIndex);
+  }
+  return total;
 }
 
 }  // namespace packmpi::neighbor

@@ -77,17 +77,40 @@ void Neighborhood::rebuild(particles::Store& store) {
   }
   if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
   build_walls(store);
+  sweep_ = make_sweep(store.owned(), pairs_, walls_, halo_);
   drift_ = 0.0;
   ++effort_.rebuilds;
   effort_.candidates += candidates_;
   effort_.rebuilding += watch.seconds();
 }
 
-void Neighborhood::refresh_in_time(particles::Store& store) {
+void Neighborhood::begin_refresh(Half half, const particles::Store& store) {
   if (comm_->size() == 1) return;
   const Stopwatch watch;
-  halo_.refresh(store);
+  halo_.begin(half, store);
   effort_.refreshing += watch.seconds();
+}
+
+void Neighborhood::end_refresh(Half half, particles::Store& store) {
+  if (!halo_.under_way(half)) return;
+  const Stopwatch watch;
+  halo_.end(half, store);
+  effort_.refreshing += watch.seconds();
+}
+
+void Neighborhood::begin_missing(const particles::Store& store) {
+  for (const Half half : halves) {
+    if (!halo_.under_way(half)) begin_refresh(half, store);
+  }
+}
+
+void Neighborhood::arrive(particles::Store& store) {
+  for (const Half half : halves) end_refresh(half, store);
+}
+
+void Neighborhood::refresh_ghosts(particles::Store& store) {
+  for (const Half half : halves) halo_.begin(half, store);
+  for (const Half half : halves) halo_.end(half, store);
 }
 
 void Neighborhood::meet(std::array<double, 2>& shared) {
@@ -104,21 +127,14 @@ Alarm Neighborhood::follow(particles::Store& store, double max_speed, double tim
   meet(shared);
   const auto alarm = static_cast<Alarm>(static_cast<int>(shared[1]));
   const double limit = 0.5 * scene_->skin;
-  if (alarm == Alarm::fault || shared[0] <= limit) {
-    refresh_in_time(store);
-    return alarm;
-  }
+  begin_missing(store);
+  if (alarm == Alarm::fault || shared[0] <= limit) return alarm;
   drift_ = largest_displacement(store);
-  if (comm_->max(drift_) <= live_on * limit) {
-    refresh_in_time(store);
-    return alarm;
-  }
+  if (comm_->max(drift_) <= live_on * limit) return alarm;
   bool all_inside = true;
   for (LocalIndex i = 0; i < store.owned() && all_inside; ++i) all_inside = is_inside(store, i);
-  if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) {
-    refresh_in_time(store);
-    return Alarm::fault;
-  }
+  if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) return Alarm::fault;
+  arrive(store);
   rebuild(store);
   return alarm;
 }

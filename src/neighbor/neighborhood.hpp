@@ -10,6 +10,7 @@
 #include "neighbor/lists.hpp"
 #include "neighbor/size_classes.hpp"
 #include "neighbor/still.hpp"
+#include "neighbor/sweep.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
 #include "scene/scene.hpp"
@@ -25,7 +26,7 @@ struct Effort {
   std::int64_t rebuilds = 0;
   std::int64_t candidates = 0;  ///< pairs looked at for contact lists
   double rebuilding = 0.0;      ///< [s] in rebuilds
-  double refreshing = 0.0;      ///< [s] in refreshes of ghosts; with other ranks only
+  double refreshing = 0.0;      ///< [s] sending ghosts, waiting for them, unpacking them; with other ranks only
   double waiting = 0.0;         ///< [s] in the reduction of a step; with other ranks only
 };
 
@@ -51,17 +52,22 @@ class Neighborhood {
   void rebuild(particles::Store& store);
 
   /// Collective. Tells that all particles moved for `time_step` at speeds of at most `max_speed` (this rank's own
-  /// bound), and what this rank noticed; brings lists and ghosts up to date for the next step: rebuilds, or refreshes
-  /// the ghosts. Returns on all ranks the gravest alarm of any; a fault too if a speed is not finite, or if particles
-  /// are outside the container when lists are due. After a fault only the ghosts are refreshed.
+  /// bound), and what this rank noticed; prepares the next step: rebuilds, or sees to it that the refresh of all ghosts
+  /// is under way. Returns on all ranks the gravest alarm of any; a fault too if a speed is not finite, or if particles
+  /// are outside the container when lists are due. After a fault nothing is rebuilt.
   [[nodiscard]] Alarm follow(particles::Store& store, double max_speed, double time_step, Alarm mine = Alarm::none);
 
   /// Is owned particle `i` where one may be: its centre less than its radius beyond a wall, and finite? Local.
   [[nodiscard]] bool is_inside(const particles::Store& store, LocalIndex i) const;
 
-  /// Collective. Ghosts take position, velocity and spin of their owners. follow() does it, too; this is for trial
-  /// states within a step.
-  void refresh_ghosts(particles::Store& store) { halo_.refresh(store); }
+  /// The legs a step is done in: after each, begin what it sends; before each, end what it needs. See Halo.
+  [[nodiscard]] std::span<const Leg> sweep() const noexcept { return sweep_; }
+  void begin_refresh(Half half, const particles::Store& store);
+  void end_refresh(Half half, particles::Store& store);
+  /// Ends what is under way: after it ghosts have the bits of their owners. Collective.
+  void arrive(particles::Store& store);
+  /// Collective. Both halves begun and ended: for trial states within a step. Nothing may be under way.
+  void refresh_ghosts(particles::Store& store);
   /// Collective. A number of each owned particle to its ghosts, by slot; see Halo::share.
   void share(std::span<std::int64_t> values) const { halo_.share(values); }
 
@@ -80,7 +86,7 @@ class Neighborhood {
 
  private:
   void migrate(particles::Store& store, comm::Purpose purpose) const;  // collective
-  void refresh_in_time(particles::Store& store);                       // collective
+  void begin_missing(const particles::Store& store);                   // collective
   void meet(std::array<double, 2>& shared);                            // collective: the reduction of a step
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
@@ -107,6 +113,7 @@ class Neighborhood {
   SizeClasses size_classes_;  // used if the scene has more than one
   PairList pairs_, near_pairs_;
   WallList walls_;
+  std::vector<Leg> sweep_;
   // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.
   std::array<std::vector<double>, 3> x_;
   std::vector<double> radius_;

@@ -120,6 +120,12 @@ Rank Ownership::owner(const Table& table, geometry::ColumnIndex column) const no
   return part_of(table.cuts_x, ix) + parts_x * part_of(table.cuts_y, iy);
 }
 
+std::array<int, 2> Ownership::part() const noexcept {
+  if (kind_ == input::Decomposition::metis) return {0, 0};
+  const int parts_x = static_cast<int>(table_.cuts_x.size()) - 1;
+  return {comm_->rank() % parts_x, comm_->rank() / parts_x};
+}
+
 void Ownership::collect() {
   columns_.clear();
   neighbors_.clear();
@@ -127,9 +133,8 @@ void Ownership::collect() {
   // Slab and pencil parts are rectangles: walk only those. METIS parts have any shape: walk the whole grid.
   int x0 = 0, x1 = nx, y0 = 0, y1 = ny;
   if (kind_ != input::Decomposition::metis) {
-    const int parts_x = static_cast<int>(table_.cuts_x.size()) - 1;
-    const auto px = static_cast<std::size_t>(comm_->rank() % parts_x);
-    const auto py = static_cast<std::size_t>(comm_->rank() / parts_x);
+    const auto px = static_cast<std::size_t>(part()[0]);
+    const auto py = static_cast<std::size_t>(part()[1]);
     x0 = table_.cuts_x[px], x1 = table_.cuts_x[px + 1];
     y0 = table_.cuts_y[py], y1 = table_.cuts_y[py + 1];
   }

@@ -28,6 +28,8 @@ class Ownership {
   [[nodiscard]] Rank owner(geometry::ColumnIndex column) const noexcept;
   /// The columns of this rank, ascending.
   [[nodiscard]] std::span<const geometry::ColumnIndex> columns() const noexcept { return columns_; }
+  /// Which part of the lateral plane is this rank's, counted along x and y; {0, 0} for METIS.
+  [[nodiscard]] std::array<int, 2> part() const noexcept;
   /// The ranks, other than this one, that own a column touching one of ours; ascending.
   [[nodiscard]] std::span<const Rank> neighbors() const noexcept { return neighbors_; }
 

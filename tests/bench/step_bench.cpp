@@ -122,6 +122,8 @@ struct Bed {
     const double damping = 0.2 * std::sqrt(2.0 * modulus);
     data = {.records = store.records(),
             .owned = store.owned(),
+            .begin = 0,
+            .end = store.owned(),
             .first = pairs.first.data(),
             .second = pairs.second.data(),
             .pairs = static_cast<std::int64_t>(pairs.first.size()),

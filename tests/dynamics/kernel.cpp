@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "support/cloud.hpp"
@@ -125,6 +127,67 @@ TEST(Kernel, EqualsItsTwinBitForBit) {
         if (HasFatalFailure()) return;
       }
     }
+  }
+}
+
+/// One step of the cloud in parts, cut at random slots; some are empty.
+StepReport step_in_parts(const dynamics::Kernel kernel, Cloud& cloud, support::Dice& dice) {
+  std::vector<LocalIndex> cuts(5);
+  for (LocalIndex& cut : cuts)
+    cut = static_cast<LocalIndex>(dice.below(static_cast<std::uint64_t>(cloud.plan.owned) + 1));
+  cuts.push_back(cloud.plan.owned);
+  std::ranges::sort(cuts);
+  StepReport report;
+  dynamics::StepData part = cloud.data();
+  const std::int64_t pairs = part.pairs;
+  const std::int64_t walls = part.walls;
+  std::int64_t pairs_done = 0, walls_done = 0;
+  part.end = 0;
+  for (const LocalIndex cut : cuts) {
+    part.begin = part.end;
+    part.end = cut;
+    part.first = cloud.pairs.first.data() + pairs_done;
+    part.second = cloud.pairs.second.data() + pairs_done;
+    for (part.pairs = 0; pairs_done < pairs && part.first[part.pairs] < cut; ++pairs_done) ++part.pairs;
+    part.wall_particle = cloud.walls.particle.data() + walls_done;
+    part.wall = cloud.walls.wall.data() + walls_done;
+    for (part.walls = 0; walls_done < walls && part.wall_particle[part.walls] < cut; ++walls_done) ++part.walls;
+    report = dynamics::together(report, kernel(part));
+  }
+  return report;
+}
+
+TEST(Kernel, PartsMakeTheSameStep) {
+  support::Dice dice(4);
+  for (const Features& features : all_features()) {
+    const dynamics::Kernel kernel = dynamics::select_kernel(features);
+    for (const CloudPlan& plan : plans()) {
+      SCOPED_TRACE(words(features) + ", plan " + std::to_string(plan.seed));
+      Cloud whole(features, plan);
+      Cloud cut = whole;
+      const StepReport expected = kernel(whole.data());
+      const StepReport got = step_in_parts(kernel, cut, dice);
+      EXPECT_TRUE(same_bits(got.max_force, expected.max_force));
+      EXPECT_LE(got.max_speed, expected.max_speed);
+      EXPECT_GE(got.max_speed, expected.max_speed / std::sqrt(3.0));  // both are bounds, good to that
+      ASSERT_EQ(first_difference(whole, cut), -1);
+      EXPECT_TRUE(cut.ring_is_clear());
+    }
+  }
+}
+
+TEST(Kernel, TogetherKeepsWhatIsWrong) {
+  const StepReport fine{1.0, 2.0, true};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const bool swap : {false, true}) {
+    const auto both = [&](const StepReport& other) {
+      return swap ? dynamics::together(other, fine) : dynamics::together(fine, other);
+    };
+    EXPECT_TRUE(std::isnan(both({nan, 1.0, true}).max_speed));
+    EXPECT_TRUE(std::isnan(both({1.0, nan, true}).max_force));
+    EXPECT_FALSE(both({1.0, 1.0, false}).in_range);
+    EXPECT_EQ(both({3.0, 1.0, true}).max_speed, 3.0);
+    EXPECT_EQ(both({3.0, 1.0, true}).max_force, 2.0);
   }
 }
 

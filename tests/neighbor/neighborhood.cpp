@@ -254,6 +254,7 @@ TEST(Neighborhood, FollowsMotionWithoutMissingATouchAndGhostsCarryTheirOwnersBit
     for (int step = 0; step < 60; ++step) {
       const double fastest = move(w, dt);
       ASSERT_EQ(w.hood.follow(w.store, fastest, dt), Alarm::none);
+      w.hood.arrive(w.store);
     }
     EXPECT_GT(w.hood.rebuilds(), 3);
     EXPECT_LT(w.hood.rebuilds(), 60);
@@ -291,6 +292,7 @@ TEST(Neighborhood, AFaultOnOneRankIsKnownToAll) {
   EXPECT_EQ(w.hood.follow(w.store, 0.0, 1e-4, last ? Alarm::look : Alarm::none), Alarm::look);
   EXPECT_EQ(w.hood.follow(w.store, 0.0, 1e-4), Alarm::none);
   EXPECT_EQ(w.hood.follow(w.store, comm.rank() == 0 ? std::nan("") : 0.0, 1e-4), Alarm::fault);
+  w.hood.arrive(w.store);
 }
 
 TEST(Neighborhood, AParticleOutsideIsAFaultOnceListsAreDue) {
@@ -303,6 +305,7 @@ TEST(Neighborhood, AParticleOutsideIsAFaultOnceListsAreDue) {
   EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.4 * w.scene.skin / 0.1), Alarm::none);
   EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.4 * w.scene.skin / 0.1), Alarm::fault);
   EXPECT_EQ(w.hood.rebuilds(), before);
+  w.hood.arrive(w.store);
 }
 
 TEST(Neighborhood, AParticleFlungUpCostsNoMemory) {
@@ -314,6 +317,56 @@ TEST(Neighborhood, AParticleFlungUpCostsNoMemory) {
   }
   w.hood.rebuild(w.store);
   EXPECT_LT(w.hood.bytes(), 20 * before);
+}
+
+// Steps in which every owned particle is stamped with the number of the step when its leg is done: whatever a leg
+// reads of a ghost must bear the stamp of the step before.
+TEST(Sweep, GhostsArriveBeforeTheyAreReadAndAreSentWhenDone) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  std::int64_t met = 0;  // ghosts that were read
+  for (const input::Input& in : scenes()) {
+    World w(comm, in, 700);
+    particles::Store& store = w.store;
+    const int stamp = store.layout().velocity;
+    for (LocalIndex i = 0; i < store.owned(); ++i) store.record(i)[stamp] = 0.0;
+    w.hood.refresh_ghosts(store);
+    const PairList& pairs = w.hood.pairs();
+    for (int step = 1; step <= 3; ++step) {
+      LocalIndex done = 0;
+      std::int64_t pair = 0;
+      std::array<int, 2> ended{}, begun{};
+      for (const Leg& leg : w.hood.sweep()) {
+        ASSERT_TRUE(leg.end > done || store.owned() == 0);
+        for (const std::size_t half : {0U, 1U}) {
+          if (leg.needs[half]) w.hood.end_refresh(halves[half], store);
+          ended[half] += leg.needs[half] ? 1 : 0;
+        }
+        for (; pair < leg.pairs_end; ++pair) {
+          const LocalIndex i = pairs.first[static_cast<std::size_t>(pair)];
+          const LocalIndex j = pairs.second[static_cast<std::size_t>(pair)];
+          ASSERT_TRUE(done <= i && i < leg.end);
+          if (j < store.owned()) continue;
+          EXPECT_EQ(store.record(j)[stamp], step - 1);
+          ++met;
+        }
+        for (; done < leg.end; ++done) store.record(done)[stamp] = step;
+        for (const std::size_t half : {0U, 1U}) {
+          if (leg.sends[half]) w.hood.begin_refresh(halves[half], store);
+          begun[half] += leg.sends[half] ? 1 : 0;
+        }
+      }
+      EXPECT_EQ(done, store.owned());
+      EXPECT_EQ(pair, std::ssize(pairs.first));
+      EXPECT_EQ(w.hood.sweep().back().walls_end, std::ssize(w.hood.walls().particle));
+      EXPECT_EQ(ended, (std::array{1, 1}));
+      EXPECT_EQ(begun, (std::array{1, 1}));
+    }
+    w.hood.arrive(store);
+    for (const Half half : halves) {
+      for (const LocalIndex ghost : w.hood.halo().ghosts(half)) EXPECT_EQ(store.record(ghost)[stamp], 3);
+    }
+  }
+  EXPECT_EQ(comm.sum(met) > 1000, comm.size() > 1);
 }
 
 TEST(Halo, CarriesOnlyWhatTheSceneUses) {
@@ -328,6 +381,7 @@ TEST(Halo, CarriesOnlyWhatTheSceneUses) {
       };
       const std::int64_t before = ghost_bytes();
       ASSERT_EQ(w.hood.follow(w.store, 0.0, 1e-4), Alarm::none);
+      w.hood.arrive(w.store);
       const std::int64_t sent = comm.sum(ghost_bytes() - before);
       const int doubles = 2 * dimension + (rotation ? (dimension == 3 ? 3 : 1) : 0);
       EXPECT_EQ(sent, comm.sum(std::int64_t{w.store.ghosts()}) * 8 * doubles);

@@ -147,6 +147,8 @@ Cloud Cloud::renumbered(std::uint64_t seed) const {
 dynamics::StepData Cloud::data() {
   return {.records = records.data(),
           .owned = plan.owned,
+          .begin = 0,
+          .end = plan.owned,
           .first = pairs.first.data(),
           .second = pairs.second.data(),
           .pairs = static_cast<std::int64_t>(pairs.first.size()),

@@ -97,6 +97,8 @@ class World {
     gravity[static_cast<std::size_t>(scene_.box.vertical())] = -scene_.in.jamming.gravity;
     return {.records = store_.records(),
             .owned = store_.owned(),
+            .begin = 0,
+            .end = store_.owned(),
             .first = pairs_.first.data(),
             .second = pairs_.second.data(),
             .pairs = static_cast<std::int64_t>(pairs_.first.size()),
