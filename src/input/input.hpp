@@ -99,8 +99,8 @@ struct Dynamics {
   double theta = 0.0;               ///< 0: explicit; 0.5 to 1: implicit
   std::optional<double> time_step;  ///< [s]; none: "auto" (eq. 23)
   StopRule stop = StopRule::duration;
-  double settled_energy = 0.0, settled_drift = 0.0;  ///< [-] limits of "settled"
-  double settled_hold = 0.0;                         ///< [s] for which both must hold
+  double settled_energy = 0.0, settled_drift = 0.0, settled_force = 0.0;  ///< [-] limits of "settled"
+  double settled_hold = 0.0;                                              ///< [s] for which all must hold
   Precision precision = Precision::double_;
   int window = 0;              ///< newest layers that move; 0: all
   std::optional<double> thaw;  ///< [s] of the final stage; none: "auto"

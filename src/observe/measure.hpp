@@ -56,6 +56,13 @@ struct Ledger {
 [[nodiscard]] Ledger ledger(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                             const dynamics::Law& law, const neighbor::Neighborhood& neighborhood,
                             GlobalId frozen_below = 0);
+/// The unbalanced force ratio of the moving particles: mean magnitude of the force on one (contacts with particles and
+/// walls, weight, drag, near field) over the mean magnitude of a contact force; 0 at rest, infinite where nothing
+/// touches. That of the instant: friction that stops its slip within a step is in it. NaN if a near-field force is out
+/// of range. Collective; from current lists and ghosts. Exact sums. Cost: about two steps.
+[[nodiscard]] double unbalanced_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                                      const dynamics::Law& law, const neighbor::Neighborhood& neighborhood,
+                                      GlobalId frozen_below = 0);
 /// Kinetic and potential energy [J] of the owned particles with ids in [from, to). Collective, exact.
 [[nodiscard]] double energy_of(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                                GlobalId from, GlobalId to);

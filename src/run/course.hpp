@@ -14,6 +14,7 @@ struct Course {
   double mean_height = 0.0;      ///< [m] of the moving particles at the last look, stop = "settled" only
   std::int64_t calm_since = -1;  ///< step of the look since which the criteria hold; -1: they do not
   double phi_calm = 0.0;         ///< solid fraction at that look
+  unsigned met = 0;              ///< criteria that this process has told of, a bit each; not in checkpoints
 };
 
 /// What is being done and how far it is. With Pile and RunRecord, all that steers a run.

@@ -71,19 +71,47 @@ Plan plan_of(const scene::Scene& scene, Part part) {
 
 double phi_of_moving(const Pile& pile) { return observe::density(pile.comm, pile.store, pile.scene).phi_bulk; }
 
-// Looks whether the moving particles have come to rest, and for how long. True if long enough.
-bool has_settled(const Pile& pile, const Plan& plan, Course& course) {
+// One of the criteria of rest: what it measures, and below what it is met.
+struct Criterion {
+  const char* words;
+  double value, limit;
+  [[nodiscard]] bool met() const noexcept { return value < limit; }  // not for NaN
+};
+
+// Says it when a criterion is met for the first time in this part (again after a restart).
+void tell(const Pile& pile, const Plan& plan, const Criterion& criterion, unsigned bit, Course& course) {
+  const double time = static_cast<double>(course.done) * plan.stage.time_step;
+  log::debug(fmt::format("{} {:.2e} after {:.4g} s", criterion.words, criterion.value, time));
+  if (!criterion.met() || (course.met & bit) != 0) return;
+  course.met |= bit;
+  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", pile.first_ids.size(), criterion.words,
+                        criterion.value, criterion.limit, time));
+}
+
+// Are all criteria met? The dear one, which costs about two steps, is looked at only if the others are.
+bool is_calm(const Pile& pile, const Plan& plan, Course& course) {
   const input::Dynamics& limits = pile.scene.in.dynamics;
   const double g = pile.scene.in.jamming.gravity;
   const double d = 2.0 * pile.scene.sizes.mean();
   const observe::Motion motion = observe::motion(pile.comm, pile.store, pile.scene);
   const double time = static_cast<double>(plan.look_every) * plan.stage.time_step;
-  const double energy = motion.kinetic_energy / (motion.mass * g * d);
   const double drift = std::abs(motion.mean_height - course.mean_height) / time / std::sqrt(g * d);
   course.mean_height = motion.mean_height;
-  log::debug(fmt::format("KE/(m g d) {:.2e}, drift/sqrt(g d) {:.2e} after {:.4g} s", energy, drift,
-                         static_cast<double>(course.done) * plan.stage.time_step));
-  if (!(energy < limits.settled_energy && drift < limits.settled_drift)) {
+  const Criterion energy{"KE/(m g d)", motion.kinetic_energy / (motion.mass * g * d), limits.settled_energy};
+  const Criterion sinking{"drift/sqrt(g d)", drift, limits.settled_drift};
+  tell(pile, plan, energy, 1, course);
+  tell(pile, plan, sinking, 2, course);
+  if (!energy.met() || !sinking.met()) return false;
+  const double ratio = observe::unbalanced_force(pile.comm, pile.store, pile.scene, pile.stepper.law(),
+                                                 pile.neighborhood, pile.moving_from);
+  const Criterion balance{"unbalanced force ratio", ratio, limits.settled_force};
+  tell(pile, plan, balance, 4, course);
+  return balance.met();
+}
+
+// Looks whether the moving particles have come to rest, and for how long. True if long enough.
+bool has_settled(const Pile& pile, const Plan& plan, Course& course) {
+  if (!is_calm(pile, plan, course)) {
     course.calm_since = -1;
     return false;
   }
@@ -92,7 +120,7 @@ bool has_settled(const Pile& pile, const Plan& plan, Course& course) {
     course.phi_calm = phi_of_moving(pile);
   }
   return static_cast<double>(course.done - course.calm_since) * plan.stage.time_step >=
-         limits.settled_hold * (1.0 - 1e-9);
+         pile.scene.in.dynamics.settled_hold * (1.0 - 1e-9);
 }
 
 Settled result(const Pile& pile, const Plan& plan, const Course& course, bool early) {

@@ -69,6 +69,7 @@ input::Input scene_of(const Kind& kind) {
     in.dynamics.settled_energy = 1e9;  // from the first look on: a hold later the layer is over
     in.dynamics.settled_drift = 1e9;
     in.dynamics.settled_hold = 0.0061;
+    in.dynamics.settled_force = 10.0;
   }
   in.output.log_every = 0.0007;
   in.checkpoint.every = "off";

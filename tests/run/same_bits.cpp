@@ -154,6 +154,7 @@ TEST(SameBitsWithAWindow, OfSoftLayersThatSettle) {
   in.dynamics.settled_energy = 0.3;
   in.dynamics.settled_drift = 0.3;
   in.dynamics.settled_hold = 0.01;
+  in.dynamics.settled_force = 10.0;
   expect_one_pack(in, {1, 3, 4});
 }
 

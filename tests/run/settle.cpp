@@ -115,6 +115,7 @@ TEST(Settle, StopsALayerOnceItIsCalm) {
   in.dynamics.settled_energy = 1e-2;
   in.dynamics.settled_drift = 1e-2;
   in.dynamics.settled_hold = 0.05;
+  in.dynamics.settled_force = 1.0;
   const output::RunRecord record = pack(in);
   for (const output::LayerRow& row : record.layers) {
     EXPECT_EQ(row.stop_reason, "settled");
@@ -123,11 +124,14 @@ TEST(Settle, StopsALayerOnceItIsCalm) {
     EXPECT_LT(row.kinetic_per_mgd, 1e-2);
     EXPECT_EQ(row.steps % 25, 0);  // looks every 5 ms
   }
-  in.dynamics.settled_energy = 1e-30;  // never
   in.layers.duration = 0.4;
-  for (const output::LayerRow& row : pack(in).layers) {
-    EXPECT_EQ(row.stop_reason, "duration");
-    EXPECT_EQ(row.steps, 2000);
+  for (double input::Dynamics::*limit : {&input::Dynamics::settled_energy, &input::Dynamics::settled_force}) {
+    input::Input never = in;
+    never.dynamics.*limit = 1e-30;
+    for (const output::LayerRow& row : pack(never).layers) {
+      EXPECT_EQ(row.stop_reason, "duration");
+      EXPECT_EQ(row.steps, 2000);
+    }
   }
 }
 

@@ -1,0 +1,113 @@
+/// How far from equilibrium the moving particles are.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "dynamics/kernel.hpp"
+#include "dynamics/near_field.hpp"
+#include "geometry/volume.hpp"
+#include "observe/contact_force.hpp"
+#include "observe/measure.hpp"
+
+namespace packmpi::observe {
+namespace {
+
+/// Forces on the owned particles in the scene's force quanta: sums of integers, the same in any order.
+class Sums {
+ public:
+  Sums(const particles::Store& store, const scene::Scene& scene)
+      : scene_(&scene),
+        each_(static_cast<std::size_t>(dynamics::accumulators_of(store.layout()))),
+        sums_(static_cast<std::size_t>(store.owned()) * each_, 0) {}
+
+  void add(LocalIndex i, const Vec3& force, int sign = 1) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->box.dimension); ++a) {
+      sums_[static_cast<std::size_t>(i) * each_ + a] += sign * std::llround(force[a] / scene_->force_quantum);
+    }
+  }
+  [[nodiscard]] double magnitude(LocalIndex i) const {
+    double squared = 0.0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->box.dimension); ++a) {
+      const double f = static_cast<double>(sums_[static_cast<std::size_t>(i) * each_ + a]) * scene_->force_quantum;
+      squared += f * f;
+    }
+    return std::sqrt(squared);
+  }
+  [[nodiscard]] std::int64_t* accumulators() noexcept { return sums_.data(); }
+
+ private:
+  const scene::Scene* scene_;
+  std::size_t each_;
+  std::vector<std::int64_t> sums_;
+};
+
+double length(const Vec3& f) { return std::sqrt(dot(f, f)); }
+
+/// Weight and drag.
+void add_body_forces(const particles::Store& store, const scene::Scene& scene, Sums& sums) {
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const input::Drag& drag = scene.in.drag;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const Vec3 v = store.velocity(i);
+    Vec3 force{};
+    for (std::size_t a = 0; a < 3; ++a) force[a] = -drag.coefficient * (v[a] - drag.fluid_velocity[a]);
+    force[vertical] -= scene.in.particles.density * geometry::volume(3, store.radius(i)) * scene.in.jamming.gravity;
+    sums.add(i, force);
+  }
+}
+
+/// Each touching pair acts on both its ends that are owned here; its magnitude is counted once over all ranks.
+void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
+               const neighbor::PairList& pairs, GlobalId frozen_below, Sums& sums, std::vector<double>& magnitudes) {
+  const auto ids = store.ids();
+  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
+    const LocalIndex i = pairs.first[p];
+    const LocalIndex j = pairs.second[p];
+    const Touch at = touch(store, scene.box, i, j);
+    if (!(at.overlap > 0.0)) continue;
+    const Vec3 force = pair_force(store, law, i, j, at);
+    sums.add(i, force);
+    if (j < store.owned()) sums.add(j, force, -1);
+    const GlobalId other = ids[static_cast<std::size_t>(j)];
+    if (j < store.owned() || other < frozen_below || ids[static_cast<std::size_t>(i)] < other) {
+      magnitudes.push_back(length(force));
+    }
+  }
+}
+
+void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
+               const neighbor::WallList& walls, Sums& sums, std::vector<double>& magnitudes) {
+  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
+    const LocalIndex i = walls.particle[w];
+    const double depth = wall_penetration(store, scene.box, i, walls.wall[w]);
+    if (!(depth > 0.0)) continue;
+    const Vec3 force = wall_force(store, scene.box, law, i, walls.wall[w], depth);
+    sums.add(i, force);
+    magnitudes.push_back(length(force));
+  }
+}
+
+}  // namespace
+
+double unbalanced_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                        const dynamics::Law& law, const neighbor::Neighborhood& neighborhood, GlobalId frozen_below) {
+  Sums sums(store, scene);
+  bool in_range = true;
+  if (scene.features.near_field) {
+    in_range = dynamics::add_near_field(scene, store, neighborhood.near_pairs(), sums.accumulators());
+  }
+  std::array<std::vector<double>, 2> terms;  // on particles, of contacts
+  add_body_forces(store, scene, sums);
+  add_pairs(store, scene, law, neighborhood.pairs(), frozen_below, sums, terms[1]);
+  add_walls(store, scene, law, neighborhood.walls(), sums, terms[1]);
+  for (LocalIndex i = 0; i < store.owned(); ++i) terms[0].push_back(sums.magnitude(i));
+  std::array<std::int64_t, 3> counts{std::ssize(terms[0]), std::ssize(terms[1]), in_range ? 0 : 1};
+  comm.sum(counts);
+  const std::vector<double> totals = comm::exact_sums(comm, terms);
+  if (counts[2] > 0) return std::numeric_limits<double>::quiet_NaN();
+  if (totals[0] == 0.0) return 0.0;
+  if (totals[1] == 0.0) return std::numeric_limits<double>::infinity();
+  return totals[0] / static_cast<double>(counts[0]) / (totals[1] / static_cast<double>(counts[1]));
+}
+
+}  // namespace packmpi::observe
