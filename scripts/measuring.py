@@ -1,4 +1,4 @@
-"""What the scripts that measure packs share: the fast protocols by name, one analysis for the packs of any code, where and
+"""What the scripts that measure packs share: scenes that leave their protocol to a preset, one analysis for the packs of any code, where and
 when something was measured, and how a block of a document is written anew."""
 import datetime
 import statistics
@@ -12,9 +12,15 @@ from common import ENVIRONMENT, ROOT  # noqa: F401  (for the scripts that measur
 # What a pack may differ by from the reference protocol's, at equal inserted mass.
 BOUNDS = {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}
 
-# Shorter protocols of example 5.3 (3D, r = 20 mm, E = 1e8 Pa, reference step 1e-4 s), doc/theory.md "Shorter runs".
-FAST_3D = {"layers.youngs_modulus": "1e7", "layers.time_step": "5.9e-4", "layers.duration": "0.3",
-           "layers.velocity": "[0.0,0.0,-0.3]", "dynamics.window": "5", "dynamics.thaw": "0.9", "dynamics.time_step": "2e-4"}
+def bare_scene(file, folder):
+    """input/FILE.toml without its own fidelity, step and duration, so that these come from the preset that a run names: keys of
+    a scene win over its preset's. The copy's path, in `folder`."""
+    own = ("fidelity", "duration", "time_step")
+    lines = (ROOT / f"input/{file}.toml").read_text().splitlines()
+    path = Path(folder) / f"{file}.toml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(line for line in lines if line.split("=")[0].strip() not in own) + "\n")
+    return path
 
 
 def options_of(settings):

@@ -2,7 +2,7 @@
 """What each way to a shorter run saves and what it changes in the pack, at equal inserted mass: a table in
 doc/performance.md, its data in doc/data/speedups.csv.
 
-usage: scripts/speedups.py [--seeds 4] [--scenes 3d_on 3d_off 2d_on 2d_off] [--settings A2 B ...] [--report-only]
+usage: scripts/speedups.py [--seeds 4] [--scenes 3d_on 3d_off 2d_on 2d_off] [--settings A2 balanced ...] [--report-only]
 
 Runs build/packmpi on examples 5.3 and 5.1 (twelve layers, so every pack of a scene holds the same spheres), one rank, one run
 at a time. Runs are kept in results/speedups and not repeated while the program's sources and the settings are the same:
@@ -40,7 +40,7 @@ def settings(dimension):
         "soft layers, thaw 0.9 s": {**soft, "dynamics.thaw": "0.9"},
         "larger step": larger,
         "A2": {**larger, **down, "layers.duration": "0.35" if dimension == 3 else "0.5", "dynamics.thaw": "0.6" if dimension == 3 else "1.0"},
-        "B": {**larger, **down, **soft, "layers.duration": "0.3" if dimension == 3 else "0.6", "dynamics.window": "5", "dynamics.thaw": "0.9"},
+        "balanced": {"fidelity": "balanced"},
     }
 
 
@@ -54,7 +54,7 @@ def source():
 def make(options, scene, name, seed):
     """One row of the data."""
     file, common, _ = SCENES[scene]
-    values = {**common, **settings(int(scene[0]))[name]}
+    values = {"fidelity": "paper", **common, **settings(int(scene[0]))[name]}
     folder = options.results / scene / "".join(c if c.isalnum() else "_" for c in name) / f"seed_{seed}"
     kept = folder / "row.json"
     key = [options.source, values]
@@ -64,7 +64,7 @@ def make(options, scene, name, seed):
         return None
     folder.mkdir(parents=True, exist_ok=True)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([options.program, measuring.ROOT / f"input/{file}.toml", "-q", "--force", "--seed", str(seed), "-o", folder,
+    done = subprocess.run([options.program, measuring.bare_scene(file, options.results), "-q", "--force", "--seed", str(seed), "-o", folder,
                            *measuring.options_of(values)], env=measuring.ENVIRONMENT,
                           stdout=subprocess.DEVNULL, check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -12,11 +12,9 @@ import argparse
 import csv
 import fcntl
 import json
-import math
 import os
 import resource
 import shutil
-import statistics
 import subprocess
 import sys
 import time
@@ -109,18 +107,6 @@ KNOBS = {
 }
 SEEDS_OF_KNOBS = 4
 KNOB_SCENES = {"precision": ("small_on", "graded_on", "2d_on"), "implicit": ("tiny_on",)}   # where not on --knob-scenes
-FILES_OWN = ("layers.duration", "dynamics.time_step", "fidelity")   # what a setting says instead of the scene's file
-
-
-def bare_scene(options, file):
-    """The scene's file without its own step, duration and fidelity, so that these come from `fidelity`."""
-    names = {key.split(".")[-1] for key in FILES_OWN}
-    lines = (measuring.ROOT / f"input/{file}.toml").read_text().splitlines()
-    path = options.results / f"{file}.toml"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(line for line in lines if line.split("=")[0].strip() not in names) + "\n")
-    return path
-
 
 def planned(options):
     """(scene, setting, options of the program, seed), the references of each scene first."""
@@ -172,7 +158,7 @@ def make(options, scene, setting, values, seed):
     shutil.rmtree(folder, ignore_errors=True)
     words = measuring.options_of(values)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([options.program, bare_scene(options, file), "-q", "--force", "--seed", str(seed), "-o", folder,
+    done = subprocess.run([options.program, measuring.bare_scene(file, options.results), "-q", "--force", "--seed", str(seed), "-o", folder,
                            "--set", "output.log_every=0.5", *words],
                           env=measuring.ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
