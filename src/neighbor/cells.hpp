@@ -11,7 +11,7 @@ namespace packmpi::neighbor {
 
 /// The columns of a rank with their surroundings. Made anew when the ownership changes. Local columns are numbered: own
 /// columns first, rows along the shorter extent fastest (that keeps the window of the half list small), in every other
-/// part from high to low along the longer one; then the ghost columns.
+/// part from high to low along the longer one, and in a whole period from both ends in turn; then the ghost columns.
 class LocalColumns {
  public:
   explicit LocalColumns(const scene::Ownership& ownership, Rank rank);

@@ -36,8 +36,9 @@ LocalColumns::LocalColumns(const scene::Ownership& ownership, Rank rank) : nx_(o
   for (auto& [key, columns] : borders) borders_.push_back({key.second, key.first, std::move(columns)});
 }
 
-// Own columns sorted so that runs along the shorter extent are contiguous. Every other part goes backwards along the
-// longer one: two parts that touch across it then meet in the same half of a step (Halo).
+// Own columns sorted so that runs along the shorter extent are contiguous. Along the longer one every other part goes
+// backwards, and a part that is a whole period goes both ways from its first row: rows that touch, here or across a
+// border, then lie in the same half of the slots but near the middle (Halo).
 void LocalColumns::number_own(const scene::Ownership& ownership) {
   const std::span<const geometry::ColumnIndex> own = ownership.columns();
   global_.assign(own.begin(), own.end());
@@ -50,10 +51,16 @@ void LocalColumns::number_own(const scene::Ownership& ownership) {
   width_ = x(xh) - x0_ + 1;
   depth_ = y(yh) - y0_ + 1;
   const bool along_x = depth_ < width_;
-  const bool backwards = ownership.part()[along_x ? 0 : 1] % 2 == 1;
+  const std::size_t axis = along_x ? 0 : 1;
+  const int rows = along_x ? width_ : depth_;
+  const bool backwards = ownership.part()[axis] % 2 == 1;
+  const bool ring = ownership.grid().box().periodic[axis] && rows == ownership.grid().counts()[axis];
+  const auto rank_of_row = [&](int row) {
+    if (ring) return std::min(2 * row, 2 * (rows - 1 - row) + 1);  // 0, the last, 1, the last but one, ...
+    return backwards ? rows - 1 - row : row;
+  };
   std::ranges::sort(global_, {}, [&](geometry::ColumnIndex c) {
-    const int slow = along_x ? x(c) : y(c);
-    return std::pair{backwards ? -slow : slow, along_x ? y(c) : x(c)};
+    return std::pair{rank_of_row(along_x ? x(c) - x0_ : y(c) - y0_), along_x ? y(c) : x(c)};
   });
   own_lookup_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(depth_), -1);
   for (std::size_t k = 0; k < global_.size(); ++k) {
