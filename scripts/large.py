@@ -10,7 +10,6 @@ made anew while the program and the settings are the same. --picture draws the m
 import argparse
 import json
 import resource
-import statistics
 import subprocess
 import sys
 import time
@@ -21,6 +20,7 @@ import measuring
 PAPER = {"fidelity": "paper"}
 SIDE, HEIGHT = 10.58, 0.48   # [m] of input/million.toml
 TALL = (0.25, 0.5, 1.0, 2.0)  # [m]
+TALL_RUNS = 5
 
 
 def cases(options):
@@ -38,27 +38,32 @@ def cases(options):
 
 
 def make(options, name, scene, settings, ranks):
-    """The figures of a run, from its results if it was made before."""
+    """The figures of a run, from its results if it was made before. Short ones are made several times: the quickest counts."""
     folder = options.results / name
     kept = folder / "figures.json"
     key = [measuring.commit(), scene, settings, ranks]
     if kept.exists() and json.loads(kept.read_text())["key"] == key:
         return json.loads(kept.read_text())
+    figures = min((run(options, folder, scene, settings, ranks) for _ in range(TALL_RUNS if scene == "tall" else 1)), key=lambda f: f["own"])
+    figures = {"key": key, **figures}
+    kept.write_text(json.dumps(figures, indent=1))
+    print(f"{name}: {figures['particles']} spheres in {figures['wall']:.1f} s", flush=True)
+    return figures
+
+
+def run(options, folder, scene, settings, ranks):
     folder.mkdir(parents=True, exist_ok=True)
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    start = time.monotonic()
     done = subprocess.run(["mpirun", "-n", str(ranks), options.program, measuring.ROOT / f"input/{scene}.toml", "-q", "--force",
                            "-o", folder, *measuring.options_of(settings)], env=measuring.ENVIRONMENT,
                           stdout=subprocess.DEVNULL, check=False)
-    wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    wall = time.monotonic() - start
     if done.returncode not in (0, 3):
-        sys.exit(f"large: {name} ended with exit code {done.returncode}")
+        sys.exit(f"large: {folder.name} ended with exit code {done.returncode}")
     summary = json.loads((folder / f"{scene}.json").read_text())
-    figures = {"key": key, "ranks": ranks, "wall": wall, "cpu": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
-               "peak": after.ru_maxrss / 1024.0, "layers": len(summary["layers"]),
-               "bytes": summary["provenance"].get("bytes_per_particle"), **summary["got"]}
-    kept.write_text(json.dumps(figures, indent=1))
-    print(f"{name}: {figures['particles']} spheres in {wall:.1f} s", flush=True)
-    return figures
+    return {"ranks": ranks, "wall": wall, "own": summary["provenance"]["wall_seconds"],
+            "peak": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0, "layers": len(summary["layers"]),
+            "bytes": summary["provenance"].get("bytes_per_particle"), **summary["got"]}
 
 
 def million_table(found):
@@ -79,28 +84,16 @@ def million_table(found):
     return out
 
 
-def start_seconds(options):
-    """CPU seconds of mpirun and the program with nothing to do, median of five."""
-    seconds = []
-    for _ in range(5):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(["mpirun", "-n", "1", options.program, "check", measuring.ROOT / "input/tall.toml"], env=measuring.ENVIRONMENT,
-                       stdout=subprocess.DEVNULL, check=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return statistics.median(seconds)
-
-
-def tall_table(options, found):
+def tall_table(found):
     rows = [figures for name, figures in found.items() if name.startswith("tall")]
     if not rows:
         return []
-    start = start_seconds(options)
-    cost = [(f["cpu"] - start) / f["particles"] for f in rows]
-    out = ["| height, m | layers | spheres | particle-steps a sphere | CPU s | without start, a sphere |", "|---|---|---|---|---|---|"]
+    cost = [f["own"] / f["particles"] for f in rows]
+    out = [f"Least of {TALL_RUNS} runs; seconds are the program's own, from the scene to the written pack, without the start of MPI.", "",
+           "| height, m | layers | spheres | particle-steps a sphere | s | s a sphere |", "|---|---|---|---|---|---|"]
     for f, each in zip(rows, cost):
-        out.append(f"| {f['height']:.3f} | {f['layers']} | {f['particles']:,} | {f['particle_steps'] / f['particles']:.3g} | {f['cpu']:.1f} | {each:.2e} |")
-    return out + ["", f"Start: {start:.2f} s of CPU time. The dearest sphere costs {max(cost) / min(cost):.2f} times the cheapest."]
+        out.append(f"| {f['height']:.3f} | {f['layers']} | {f['particles']:,} | {f['particle_steps'] / f['particles']:.3g} | {f['own']:.2f} | {each:.2e} |")
+    return out + ["", f"The dearest sphere costs {max(cost) / min(cost):.2f} times the cheapest."]
 
 
 def parse():
@@ -121,7 +114,7 @@ def main():
     options = parse()
     found = {name: make(options, name, scene, settings, ranks) for name, scene, settings, ranks in cases(options)}
     scale = "" if options.scale == 1.0 else f" --scale {options.scale:g}"
-    text = "\n".join([f"{measuring.made_by('scripts/large.py' + scale)}.", "", *million_table(found), "", *tall_table(options, found)])
+    text = "\n".join([f"{measuring.made_by('scripts/large.py' + scale)}.", "", *million_table(found), "", *tall_table(found)])
     print(text)
     measuring.write_block(options.doc, "large", text.rstrip())
     if options.picture and "million" in found:

@@ -108,7 +108,7 @@ Halo::Halo(const comm::Comm& comm, const particles::Layout& layout)
 
 Halo::~Halo() = default;
 
-void Halo::plan(particles::Store& store, std::vector<Sends> sends) {
+void Halo::plan(particles::Store& store, const std::vector<Sends>& sends) {
   assert(!under_way(Half::first) && !under_way(Half::second));
   store.set_ghosts(0);
   if (comm_->size() == 1) return;

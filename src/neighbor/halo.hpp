@@ -35,7 +35,7 @@ class Halo {
   /// Collective. Sends whole records and ids of `sends` (one entry for each neighbour rank, ascending) and appends what
   /// comes as ghosts, in order of arrival rank. Nothing may be under way. Call order_ghosts() next, then refresh at
   /// will.
-  void plan(particles::Store& store, std::vector<Sends> sends);
+  void plan(particles::Store& store, const std::vector<Sends>& sends);
 
   /// Local, once after plan(). Moves ghost k (arrival order) to slot owned() + place[k].
   void order_ghosts(particles::Store& store, const std::vector<LocalIndex>& place);

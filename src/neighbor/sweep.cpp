@@ -8,7 +8,7 @@ namespace {
 // By half, the first owned slot with a ghost of it as partner; `owned` if there is none.
 std::array<LocalIndex, 2> first_needs(LocalIndex owned, const PairList& pairs, const Halo& halo) {
   const auto ghosts = static_cast<std::size_t>(halo.ghosts());
-  std::vector<char> of_second(ghosts, 0);
+  std::vector<unsigned char> of_second(ghosts, 0);
   for (const LocalIndex slot : halo.ghosts(Half::second)) of_second[static_cast<std::size_t>(slot - owned)] = 1;
   std::array<LocalIndex, 2> first{owned, owned};
   for (std::size_t p = 0; p < pairs.first.size() && (first[0] == owned || first[1] == owned); ++p) {
@@ -37,7 +37,7 @@ std::vector<Leg> make_sweep(LocalIndex owned, const PairList& pairs, const WallL
     ends.push_back(send[half]);
   }
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
 
   std::vector<Leg> legs;
   LocalIndex begin = 0;
