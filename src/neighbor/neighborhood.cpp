@@ -109,8 +109,8 @@ void Neighborhood::arrive(particles::Store& store) {
 }
 
 void Neighborhood::refresh_ghosts(particles::Store& store) {
-  for (const Half half : halves) halo_.begin(half, store);
-  for (const Half half : halves) halo_.end(half, store);
+  begin_missing(store);
+  arrive(store);
 }
 
 void Neighborhood::meet(std::array<double, 2>& shared) {

@@ -59,7 +59,6 @@ void add_body_forces(const particles::Store& store, const scene::Scene& scene, S
 /// Each touching pair acts on both its ends that are owned here; its magnitude is counted once over all ranks.
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
                const neighbor::PairList& pairs, GlobalId frozen_below, Sums& sums, std::vector<double>& magnitudes) {
-  const auto ids = store.ids();
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
@@ -68,10 +67,7 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
     const Vec3 force = pair_force(store, law, i, j, at);
     sums.add(i, force);
     if (j < store.owned()) sums.add(j, force, -1);
-    const GlobalId other = ids[static_cast<std::size_t>(j)];
-    if (j < store.owned() || other < frozen_below || ids[static_cast<std::size_t>(i)] < other) {
-      magnitudes.push_back(length(force));
-    }
+    if (is_counted_here(store, i, j, frozen_below)) magnitudes.push_back(length(force));
   }
 }
 

@@ -15,8 +15,8 @@ struct PairSums {
   std::int64_t ends = 0;  // owned ends of touching pairs
 };
 
-/// Each touching pair adds one to both its ends that are owned here. A pair across a border is listed on both ranks;
-/// the owner of the smaller id counts it in the sums. A pair with a frozen particle is listed once only.
+/// Each touching pair adds one to both its ends that are owned here. A pair across a border is listed on both ranks,
+/// and one of them counts it in the sums.
 PairSums count_pairs(const particles::Store& store, const geometry::Box& box, const neighbor::PairList& pairs,
                      GlobalId frozen_below, std::vector<std::int32_t>& of_particle) {
   PairSums sums;
@@ -28,11 +28,8 @@ PairSums count_pairs(const particles::Store& store, const geometry::Box& box, co
     ++of_particle[static_cast<std::size_t>(i)];
     const bool both_owned = j < store.owned();
     if (both_owned) ++of_particle[static_cast<std::size_t>(j)];
-    const auto ids = store.ids();
-    ++sums.ends;
-    if (both_owned) ++sums.ends;
-    const GlobalId other = ids[static_cast<std::size_t>(j)];
-    if (both_owned || other < frozen_below || ids[static_cast<std::size_t>(i)] < other) {
+    sums.ends += both_owned ? 2 : 1;
+    if (is_counted_here(store, i, j, frozen_below)) {
       sums.overlaps.push_back(overlap / std::min(store.radius(i), store.radius(j)));
       sums.largest = std::max(sums.largest, sums.overlaps.back());
     }

@@ -59,18 +59,15 @@ double elastic_energy(const dynamics::LawConstants& kind, double reduced_radius,
   return 0.4 * kind.stiffness * std::sqrt(reduced_radius * overlap) * overlap * overlap;
 }
 
-/// One term for each touching pair: of those across a border, the owner of the smaller id; of those with a frozen
-/// particle, the mover's.
+/// One term for each touching pair.
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
                const neighbor::PairList& pairs, GlobalId frozen_below, std::vector<double>& terms) {
-  const auto ids = store.ids();
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
     const double overlap = touch(store, scene.box, i, j).overlap;
     if (!(overlap > 0.0)) continue;
-    const GlobalId other = ids[static_cast<std::size_t>(j)];
-    if (j >= store.owned() && other >= frozen_below && other < ids[static_cast<std::size_t>(i)]) continue;
+    if (!is_counted_here(store, i, j, frozen_below)) continue;
     const double ri = store.radius(i);
     const double rj = store.radius(j);
     terms.push_back(elastic_energy(law.pair, ri * rj / (ri + rj), overlap));

@@ -23,6 +23,14 @@ struct Touch {
   return {store.radius(i) + store.radius(j) - distance, {d[0] * inverse, d[1] * inverse, d[2] * inverse}};
 }
 
+/// Is this listed pair this rank's to count? One rank counts each: of a pair across a border the owner of the smaller
+/// id; of one with a frozen particle (ids below `frozen_below`), the mover's. `i` is owned.
+[[nodiscard]] inline bool is_counted_here(const particles::Store& store, LocalIndex i, LocalIndex j,
+                                          GlobalId frozen_below) {
+  const GlobalId other = store.ids()[static_cast<std::size_t>(j)];
+  return j < store.owned() || other < frozen_below || store.ids()[static_cast<std::size_t>(i)] < other;
+}
+
 /// Depth by which owned particle `i` is inside a wall [m]; positive: it touches.
 [[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Box& box, LocalIndex i,
                                              neighbor::Wall wall) {
