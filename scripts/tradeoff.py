@@ -40,11 +40,21 @@ GRAVEL = {"container.size": "[2.5,2.0,2.0]", "container.boundary": '["periodic",
           "particles.density": "1800.0", "particles.youngs_modulus": "3e8", "particles.poisson_ratio": "0.2", "contact.friction": "0.35",
           "contact.damping_ratio": "0.2", "drag.coefficient": "0.0", "jamming.gravity": "9.81",
           "particles.radius": '{distribution="uniform",min=0.04,max=0.09,weighting="mass"}'}
-# And one to confirm what the others led to.
+# And a third.
 COBBLES = {"container.size": "[2.2,2.2,2.4]", "layers.maximum": "14", "layers.thickness": "0.4", "particles.density": "2000.0",
            "particles.youngs_modulus": "4e8", "contact.friction": "0.3", "contact.damping_ratio": "0.15", "drag.coefficient": "0.0",
            "jamming.gravity": "8.0",
            "particles.radius": '{distribution="bidisperse",small=0.06,large=0.09,large_share=0.5,weighting="mass"}'}
+
+# Two that nothing was chosen by: heavy, smooth, equal, small beside a layer; and rough and graded, large beside it.
+SHOT = {"container.size": "[1.4,1.4,2.0]", "container.boundary": '["periodic","wall"]', "layers.maximum": "12", "layers.thickness": "0.4",
+        "particles.density": "7800.0", "particles.youngs_modulus": "1e9", "particles.poisson_ratio": "0.3", "contact.friction": "0.15",
+        "contact.damping_ratio": "0.05", "drag.coefficient": "0.0", "jamming.gravity": "8.0",
+        "particles.radius": '{distribution="equal",value=0.05}'}
+REGOLITH = {"container.size": "[2.6,2.6,2.1]", "layers.maximum": "14", "layers.thickness": "0.35", "particles.density": "1500.0",
+            "particles.youngs_modulus": "3e8", "contact.friction": "0.4", "contact.damping_ratio": "0.2", "drag.coefficient": "0.0",
+            "jamming.gravity": "7.0",
+            "particles.radius": '{distribution="weibull",scale=0.085,shape=5.0,min=0.05,max=0.12,weighting="number"}'}
 
 # name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
 # `fidelity` alone says how a pack is made.
@@ -52,23 +62,25 @@ SCENES = {
     "small_on": ("paper_5_3", SMALL, 8, "3D, equal, periodic, 8 layers, rotation on"),
     "brick_on": ("paper_5_3", BRICK, 8, "3D, equal, 12 layers, rotation on"),
     "brick_off": ("paper_5_3", {**BRICK, **OFF}, 8, "the same, rotation off"),
-    "tall_on": ("paper_5_3", TALL, 3, "3D, equal, 24 layers, rotation on"),
-    "tall_off": ("paper_5_3", {**TALL, **OFF}, 3, "the same, rotation off"),
-    "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 3, "3D, Gaussian, periodic, 12 layers, rotation on"),
-    "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 3, "the same, rotation off"),
+    "tall_on": ("paper_5_3", TALL, 4, "3D, equal, 24 layers, rotation on"),
+    "tall_off": ("paper_5_3", {**TALL, **OFF, "layers.maximum": "23"}, 4, "the same, rotation off"),
+    "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 8, "3D, Gaussian, periodic, 12 layers, rotation on"),
+    "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 8, "the same, rotation off"),
     "2d_on": ("paper_5_1", TWELVE, 10, "2D, equal (example 5.1), 12 layers, rotation on"),
     "2d_off": ("paper_5_1", {**TWELVE, **OFF}, 10, "the same, rotation off"),
     "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
-    "2d_graded_off": ("paper_5_2", {**TWELVE, **OFF}, 10, "the same, rotation off"),
-    "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81; used to choose \"auto\" for friction"),
-    "gravel": ("paper_5_3", GRAVEL, 5, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81; used to do without a protocol for stiff scenes"),
-    "cobbles": ("paper_5_3", COBBLES, 10, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8; used after everything was settled"),
+    "2d_graded_off": ("paper_5_2", {**OFF, "layers.maximum": "11"}, 10, "the same, rotation off"),
+    "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81"),
+    "gravel": ("paper_5_3", GRAVEL, 8, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81"),
+    "cobbles": ("paper_5_3", COBBLES, 8, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8"),
+    "shot": ("paper_5_3", SHOT, 8, "3D, equal heavy shot of 100 mm, friction 0.15, g 8; **kept apart**"),
+    "regolith": ("paper_5_3", REGOLITH, 8, "3D, Weibull regolith of 100 to 240 mm, friction 0.4, g 7; **kept apart**"),
+    "regolith_off": ("paper_5_3", {**REGOLITH, **OFF}, 8, "the same, rotation off; **kept apart**"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
 WITHOUT_PRESETS = {"tiny_on"}
 PAPER = {"fidelity": "paper"}
 REFERENCE = "paper"
-SAME_MASS = {"tall_off": {"layers.maximum": "23"}}   # the reference reaches H_d with these, a shorter protocol may not
 
 
 def down(speed):
@@ -118,8 +130,7 @@ def planned(options):
         for seed in range(1, wanted + 1):
             for setting, values in {**({} if options.no_references else {REFERENCE: {}}),
                                     **(KNOBS["presets"] if "presets" in options.knobs and scene not in WITHOUT_PRESETS else {})}.items():
-                same = {} if setting == REFERENCE else SAME_MASS.get(scene, {})
-                runs.append((scene, setting, {**changes, **PAPER, **values, **same}, seed))
+                runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
         for knob in options.knobs:
             if scene not in KNOB_SCENES.get(knob, options.knob_scenes):
                 continue
@@ -169,6 +180,7 @@ def make(options, scene, setting, values, seed):
         row["words"] = done.stderr.strip().splitlines()[-1].split(".toml: ")[-1][:300]
         return row
     got = json.loads((folder / f"{file}.json").read_text())
+    row["contact_evaluations"] = got["counters"]["pair_steps"]["sum"]
     layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
     row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep",
                                       "particle_steps")}
@@ -179,7 +191,7 @@ def make(options, scene, setting, values, seed):
 
 
 COLUMNS = ["scene", "setting", "seed", "commit", "exit", "particles", "layers", "height", "phi", "phi_bulk", "coordination", "held_coordination",
-           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps", "cpu_seconds",
+           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps", "contact_evaluations", "cpu_seconds",
            "profile", "g", "forces", "options", "words"]
 
 
@@ -238,7 +250,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, help="seeds 1 .. N in every scene")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
-    parser.add_argument("--knobs", nargs="+", choices=KNOBS, default=list(KNOBS))
+    parser.add_argument("--knobs", nargs="*", choices=KNOBS, default=list(KNOBS))
     parser.add_argument("--knob-scenes", nargs="+", choices=SCENES, default=["small_on"], help="where single knobs are turned")
     parser.add_argument("--no-references", action="store_true", help="leave the references to another run")
     parser.add_argument("--report-only", action="store_true", help="report on the runs there are")

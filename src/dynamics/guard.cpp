@@ -11,6 +11,7 @@
 
 #include "dynamics/kernel.hpp"
 #include "geometry/box.hpp"
+#include "input/time_step.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::dynamics {
@@ -141,7 +142,7 @@ std::string advice(const Inspected& now, const Finding& found) {
   const bool settling = in.layers.time_step && now.stage.time_step == now.scene.settling.time_step;
   const double speed = norm(now.store.velocity(found.slot));
   const double known = std::isfinite(speed) ? speed : now.scene.speed_bound;
-  const double limit = scene::step_limit(in, now.store.radius(found.slot), now.stage.youngs_modulus, known);
+  const double limit = input::step_limit(in, now.store.radius(found.slot), now.stage.youngs_modulus, known);
   std::string words = fmt::format("use {} = {:.2g} s or less (eq. (23) gives {:.2g} s at {:.3g} m/s)",
                                   settling ? "layers.time_step" : "dynamics.time_step",
                                   std::min(limit, 0.5 * now.stage.time_step), limit, known);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "input/grading.hpp"
+#include "input/radius_range.hpp"
 #include "input/rhythm.hpp"
 #include "input/words.hpp"
 
@@ -27,25 +28,8 @@ struct Case {
   [[nodiscard]] const Radius& radius() const { return in.particles.radius; }
   [[nodiscard]] bool equal() const { return radius().distribution == SizeDistribution::equal; }
   [[nodiscard]] bool plane() const { return in.container.dimension == 2; }
-  [[nodiscard]] double smallest() const { return bounds().front(); }
-  [[nodiscard]] double largest() const { return bounds().back(); }
-  /// Smallest and largest radius, or more in between.
-  [[nodiscard]] std::vector<double> bounds() const {
-    switch (radius().distribution) {
-      case SizeDistribution::equal:
-        return {radius().value};
-      case SizeDistribution::bidisperse:
-        return {radius().small, radius().large};
-      case SizeDistribution::discrete:
-        return radius().radii;
-      case SizeDistribution::grading: {
-        const Curve curve = kept_curve(radius());
-        return {0.5 * curve.front()[0], 0.5 * curve.back()[0]};
-      }
-      default:
-        return {radius().min, radius().max};
-    }
-  }
+  [[nodiscard]] double smallest() const { return radius_range(radius()).smallest; }
+  [[nodiscard]] double largest() const { return radius_range(radius()).largest; }
   [[nodiscard]] const char* largest_key() const {
     switch (radius().distribution) {
       case SizeDistribution::equal:
@@ -137,7 +121,7 @@ void check_grading(const Case& scene) {
   }
 }
 
-void check_radii(const Case& scene) {
+void check_distribution(const Case& scene) {
   const Radius& radius = scene.radius();
   switch (radius.distribution) {
     case SizeDistribution::equal:
@@ -312,9 +296,10 @@ void check_checkpoint(const Case& scene) {
 
 }  // namespace
 
+void check_radii(const Input& in, const Document& document) { check_distribution({in, document}); }
+
 void check(const Input& in, const Document& document) {
   const Case scene{in, document};
-  check_radii(scene);
   check_fit(scene);
   check_fraction(scene);
   check_counts(scene);

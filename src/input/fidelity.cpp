@@ -6,19 +6,30 @@
 #include <cmath>
 
 #include "input/keys.hpp"
+#include "input/radius_range.hpp"
+#include "input/time_step.hpp"
 #include "input/values.hpp"
 
 namespace packmpi::input {
 namespace {
 
-/// A protocol without units. Times are in t = sqrt(2 h_0 / g), that of a fall through a layer's region, speeds in
-/// sqrt(2 g h_0); the paper's 1.0 s is 3.16 t in its examples.
+/// How a pack is made. The preset's keys, in SI units.
 struct Protocol {
-  double duration;  ///< of a layer
-  double speed;     ///< at insertion, downward
-  int window;
-  double thaw;  ///< for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
+  double duration = 0.0;  ///< [s] of a layer
+  double speed = 0.0;     ///< [m/s] at insertion, downward
+  int window = 0;
+  double thaw = 0.0;     ///< [s]
+  double modulus = 0.0;  ///< [Pa] while layers settle
 };
+
+// Times of presets are in t, that of a fall through a layer's region, speeds in sqrt(2 g h_0) = g t.
+double fall(const Input& in) { return std::sqrt(2.0 * in.layers.thickness / in.jamming.gravity); }
+
+bool is_draft(const Input& in) { return in.fidelity == "draft"; }
+bool flat(const Input& in) { return in.container.dimension == 2; }
+
+/// NaN, of a scene that checks will refuse: high.
+double within(double value, double low, double high) { return std::fmax(low, std::fmin(high, value)); }
 
 /// How soft layers may settle.
 struct Softness {
@@ -26,42 +37,107 @@ struct Softness {
   double weight;  ///< modulus over rho g H_d, the stress of a solid pile on its floor: less, and it bursts in the thaw
 };
 
-bool is_draft(const Input& in) { return in.fidelity == "draft"; }
-bool is_graded(const Input& in) { return in.particles.radius.distribution != SizeDistribution::equal; }
-
-bool flat(const Input& in) { return in.container.dimension == 2; }
-
-/// Modulus while layers settle [Pa]; that of the particles if it would gain little to soften them. Soft layers without
-/// spin settle too densely for "balanced".
-double soft_modulus(const Input& in) {
+/// At least `wanted` [Pa]; that of the particles if it would gain little to soften them.
+double softened(const Input& in, const Softness& softness, double wanted) {
   constexpr double worth_it = 0.75;
   const double hard = in.particles.youngs_modulus;
-  if (!is_draft(in) && !in.dynamics.rotation) return hard;
-  const Softness softness = is_draft(in) && is_graded(in) && !flat(in) ? Softness{0.03, 1.5e3} : Softness{0.1, 5e3};
   const double stress = in.particles.density * in.jamming.gravity * in.container.size.back();
-  const double soft = std::max(softness.share * hard, softness.weight * stress);
+  const double soft = std::max({wanted, softness.share * hard, softness.weight * stress});
   return soft < worth_it * hard ? soft : hard;
 }
 
-/// Both measured and chosen with scripts/tradeoff.py (doc/accuracy.md).
+/// A protocol in the plane: constants without units.
+struct Flat {
+  double duration, speed;
+  int window;
+  double thaw;  ///< for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
+  double least_thaw;
+};
+
+Protocol in_plane(const Input& in, const Flat& flat) {
+  const bool soft = is_draft(in) || in.dynamics.rotation;  // soft layers without spin settle too densely
+  const double t = fall(in), layers = in.container.size.back() / in.layers.thickness;
+  return {.duration = flat.duration * t,
+          .speed = flat.speed * in.jamming.gravity * t,
+          .window = flat.window,
+          .thaw = std::max(flat.least_thaw, flat.thaw * layers) * t,
+          .modulus = soft ? softened(in, {0.1, 5e3}, 0.0) : in.particles.youngs_modulus};
+}
+
+/// A protocol in space: how long layers settle, and how softly, follows from the creep that they are to have.
+struct Spatial {
+  double speed;     ///< at insertion
+  double creep;     ///< over that of "paper" times sqrt(d / h_0)
+  double duration;  ///< of a layer, if some softness makes up the creep with it
+  double shortest;  ///< of a layer
+  double depth;     ///< of the window, in particle diameters
+  double thaw;
+  double thaw_of_layer;  ///< and more for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
+  Softness softness;
+};
+
+/// A pile under "stop" creeps with the step: within one its weight gives a resting contact a slip of g dt^2, so that in
+/// a time T it creeps by g dt T, and the denser it is the more it has crept. "paper" gives a layer 1 s at steps of 1e-4
+/// s, 1e-3 t^2 in its examples, and all that lies below as much again: (n + 1) / 2 times that for the mean particle of
+/// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets").
+Protocol in_space(Input in, const Spatial& rule) {
+  constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5;
+  constexpr int least_window = 3, most_window = 1000;
+  const double t = fall(in), h = in.layers.thickness, height = in.container.size.back();
+  const RadiusRange radii = radius_range(in.particles.radius);
+  const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
+  const double rise = h * in.layers.fraction / settled_fraction;  // of the pile by a layer
+  Protocol p{.speed = rule.speed * in.jamming.gravity * t,
+             .window = static_cast<int>(within(std::ceil(rule.depth * diameter / rise), least_window, most_window)),
+             .thaw = (rule.thaw + rule.thaw_of_layer * height / h) * t,
+             .modulus = in.particles.youngs_modulus};
+  in.layers.velocity[in.container.size.size() - 1] = -p.speed;
+  const double layers = std::max(height / rise, 1.0);
+  const double moving = std::min(static_cast<double>(p.window), layers);
+  const double settlings = moving - moving * (moving - 1.0) / (2.0 * layers);  // in how many the mean particle moves
+  const double step = automatic_step(in, radii, p.modulus);
+  const double creep = rule.creep * std::sqrt(diameter / h) * 0.5 * (layers + 1.0) * paper * t * t - p.thaw * step;
+  const double ratio = creep / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the thaw
+  const double wanted =
+      ratio > 1.0 ? p.modulus / (ratio * ratio * std::sqrt(ratio)) : p.modulus;  // dt goes with E^-0.4
+  p.modulus = softened(in, rule.softness, wanted);
+  p.duration = within(creep / (settlings * automatic_step(in, radii, p.modulus) * t), rule.shortest, longest) * t;
+  return p;
+}
+
+/// All measured and chosen with scripts/tradeoff.py (doc/accuracy.md).
 Protocol draft(const Input& in) {
-  if (flat(in)) return {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4};
-  if (is_graded(in)) return {.duration = 0.65, .speed = 0.75, .window = 4, .thaw = 0.2};
-  return {.duration = 0.8, .speed = 0.75, .window = 4, .thaw = 0.26};
+  if (flat(in)) return in_plane(in, {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4, .least_thaw = 1.0});
+  return in_space(in, {.speed = 0.6,
+                       .creep = in.dynamics.rotation ? 1.5 : 1.1,
+                       .duration = 0.6,
+                       .shortest = 0.6,
+                       .depth = 3.5,
+                       .thaw = 0.55,
+                       .thaw_of_layer = 0.1,
+                       .softness = {0.03, 1.3e3}});
 }
 
 Protocol balanced(const Input& in) {
-  if (!in.dynamics.rotation) return {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58};
-  if (flat(in)) return {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9};
-  return {.duration = 1.0, .speed = 0.5, .window = 5, .thaw = 0.6};
+  constexpr double rest = 2.4;  // particles harden in half of it
+  if (flat(in) && in.dynamics.rotation)
+    return in_plane(in, {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9, .least_thaw = rest});
+  if (flat(in)) return in_plane(in, {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58, .least_thaw = rest});
+  return in_space(in, {.speed = in.dynamics.rotation ? 0.3 : 0.2,
+                       .creep = in.dynamics.rotation ? 2.2 : 1.6,
+                       .duration = 0.8,
+                       .shortest = 0.7,
+                       .depth = 5.6,
+                       .thaw = 1.9,
+                       .thaw_of_layer = 0.18,
+                       .softness = {0.06, 2e3}});
 }
 
 /// Three digits, the same on any machine.
 std::string rounded(double value) { return fmt::format("{:.3g}", value); }
 
 std::string downward(const Input& in, double speed) {
-  const std::string zeros = in.container.dimension == 3 ? "0, 0" : "0";
-  return fmt::format("[{}, -{}]", zeros, rounded(speed));
+  return fmt::format("[{}, -{}]", flat(in) ? "0" : "0, 0", rounded(speed));
 }
 
 }  // namespace
@@ -70,19 +146,14 @@ std::vector<PresetValue> preset(const Input& in) {
   if (in.fidelity == "paper") {
     return {{"layers.duration", "1.0"}, {"dynamics.time_step", "1e-4"}, {"dynamics.window", "0"}};
   }
-  const double h = in.layers.thickness, g = in.jamming.gravity;
-  const double modulus = soft_modulus(in);
-  const bool soft = modulus < in.particles.youngs_modulus;
   const Protocol protocol = is_draft(in) ? draft(in) : balanced(in);
-  const double fall = std::sqrt(2.0 * h / g);
-  const double layers = in.container.size.back() / h;
-  const double least_thaw = is_draft(in) ? 1.0 : 2.4;  // particles harden in half of it
-  std::vector<PresetValue> values{{"layers.duration", rounded(protocol.duration * fall)},
-                                  {"layers.velocity", downward(in, protocol.speed * g * fall)},
+  std::vector<PresetValue> values{{"layers.duration", rounded(protocol.duration)},
+                                  {"layers.velocity", downward(in, protocol.speed)},
                                   {"dynamics.time_step", "auto"},
                                   {"dynamics.window", std::to_string(protocol.window)},
-                                  {"dynamics.thaw", rounded(std::max(least_thaw, protocol.thaw * layers) * fall)}};
-  if (soft) values.push_back({"layers.youngs_modulus", rounded(modulus)});
+                                  {"dynamics.thaw", rounded(protocol.thaw)}};
+  const bool soft = protocol.modulus < in.particles.youngs_modulus;
+  if (soft) values.push_back({"layers.youngs_modulus", rounded(protocol.modulus)});
   return values;
 }
 

@@ -163,8 +163,9 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   in.name = std::filesystem::path(path).stem().string();
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
-  apply_preset(document, in);
   take_curve(document, curve, in.particles.radius);
+  check_radii(in, document);
+  apply_preset(document, in);
   check(in, document);
   in.effective = effective(in);
   return in;

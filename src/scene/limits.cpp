@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "input/time_step.hpp"
 
 namespace packmpi::scene {
 namespace {
@@ -36,7 +37,7 @@ double largest_near_force(const Scene& scene) {
 
 // Elastic force [N] of a particle of radius r on a rigid wall at an overlap [m].
 double elastic_force(const input::Particles& particles, double r, double overlap) {
-  return 4.0 / 3.0 * 2.0 * pair_modulus(particles, particles.youngs_modulus) * std::sqrt(r * overlap) * overlap;
+  return 4.0 / 3.0 * 2.0 * input::pair_modulus(particles, particles.youngs_modulus) * std::sqrt(r * overlap) * overlap;
 }
 
 // Largest force one contact may have: far above any impact of a falling layer and the weight of a whole column, but
@@ -44,11 +45,11 @@ double elastic_force(const input::Particles& particles, double r, double overlap
 double largest_force(const Scene& scene) {
   const input::Input& in = scene.in;
   const double r = scene.sizes.largest();
-  const double k = 4.0 / 3.0 * 2.0 * pair_modulus(in.particles, in.particles.youngs_modulus) *
+  const double k = 4.0 / 3.0 * 2.0 * input::pair_modulus(in.particles, in.particles.youngs_modulus) *
                    std::sqrt(r);  // against a rigid wall: r* = r, m* = m
-  const double m = mass(in.particles, r);
+  const double m = input::mass(in.particles, r);
   const double drop = scene.box.height() + 2.0 * in.layers.thickness;
-  const double speed = impact_speed(in, drop);
+  const double speed = input::impact_speed(in, drop);
   const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
   const double column = m * in.jamming.gravity * drop / r;
   const double elastic = k * r * std::sqrt(r);
@@ -63,7 +64,7 @@ double largest_force(const Scene& scene) {
 double least_force(const Scene& scene) {
   const input::Input& in = scene.in;
   const double r = scene.sizes.smallest();
-  if (in.jamming.gravity > 0.0) return mass(in.particles, r) * in.jamming.gravity;
+  if (in.jamming.gravity > 0.0) return input::mass(in.particles, r) * in.jamming.gravity;
   return elastic_force(in.particles, r, 1e-3 * r);
 }
 
@@ -74,23 +75,10 @@ double near_speed(const Scene& scene) {
   const double r = scene.sizes.smallest();
   const double cutoff = scene.in.near_field->cutoff;
   const double neighbors = std::pow(cutoff / r, scene.box.dimension);
-  return std::sqrt(2.0 * largest_near_force(scene) * cutoff * neighbors / mass(scene.in.particles, r));
+  return std::sqrt(2.0 * largest_near_force(scene) * cutoff * neighbors / input::mass(scene.in.particles, r));
 }
 
 }  // namespace
-
-double impact_speed(const input::Input& in, double drop) {
-  const double speed = norm(in.layers.velocity);
-  return std::sqrt(2.0 * in.jamming.gravity * drop + speed * speed);
-}
-
-double step_limit(const input::Input& in, double radius, double youngs_modulus, double speed) {
-  const double modulus = pair_modulus(in.particles, youngs_modulus);
-  const double limit = contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, modulus, speed) / 5.0;
-  // An explicit step dt of an oscillator is stable for omega dt < 2 (sqrt(xi^2 + 1) - xi): eq. (23) holds to xi = 1.
-  const double xi = std::max(in.contact.damping_ratio, 1.0);
-  return limit * ((std::sqrt(xi * xi + 1.0) - xi) / (std::sqrt(2.0) - 1.0));
-}
 
 std::int64_t most_layers(const input::Input& in) {
   if (in.layers.maximum > 0) return in.layers.maximum;
@@ -103,7 +91,7 @@ double speed_bound(const Scene& scene) {
   const double drop = static_cast<double>(most_layers(in)) * in.layers.thickness;  // were every layer on the last one
   const double fluid = scene.features.drag ? norm(in.drag.fluid_velocity) : 0.0;
   const double spin = scene.features.rotation ? norm(in.layers.spin) * scene.sizes.largest() : 0.0;
-  return speed_headroom * (impact_speed(in, drop) + fluid + spin + near_speed(scene));
+  return speed_headroom * (input::impact_speed(in, drop) + fluid + spin + near_speed(scene));
 }
 
 double force_quantum(const Scene& scene) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "geometry/volume.hpp"
+#include "input/time_step.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::scene {
@@ -24,35 +24,22 @@ constexpr double alike = 2.5;
   throw Error(ExitCode::bad_input, in.file + ": " + words);
 }
 
-// A large particle that lands on a small one squeezes it q^(6/5) deeper than another small one would, q the ratio of
-// radii, which makes the contact q^(3/10) stiffer in frequency; eq. (23) knows equal ones only.
-double squeeze(const Sizes& sizes) {
-  return sizes.ratio() > alike ? elementary::exponential(0.3 * elementary::logarithm(sizes.ratio())) : 1.0;
-}
-
-// "stop" lets a slip end within one step: the larger the step, the more a pile creeps, and the more so the rougher its
-// grains. Measured (doc/accuracy.md): with this, "balanced" is as far from "paper" at friction 0.5 as at 0.2.
-double chatter(const input::Contact& contact) {
-  constexpr double smooth = 0.2, power = 0.4;
-  const double friction = std::max(contact.friction, contact.wall_friction);
-  const bool stops = contact.regularisation == input::Regularisation::stop;
-  return stops && friction > smooth ? elementary::exponential(power * elementary::logarithm(friction / smooth)) : 1.0;
-}
+input::RadiusRange range(const Sizes& sizes) { return {sizes.smallest(), sizes.largest()}; }
 
 // The step `asked` under `key` for particles of this modulus; none: "auto", from the limit of eq. (23).
 double choose_time_step(const input::Input& in, const Sizes& sizes, const char* key, std::optional<double> asked,
                         double youngs_modulus) {
-  const double speed = impact_speed(in, in.layers.thickness);
   if (!asked) {
-    const double limit = step_limit(in, sizes.smallest(), youngs_modulus, speed);
-    if (!std::isfinite(limit)) {
+    const double step = input::automatic_step(in, range(sizes), youngs_modulus);
+    if (!std::isfinite(step)) {
       refuse(in, fmt::format("{}: \"auto\" needs gravity or a speed at insertion to find the impact speed of eq. (23); "
                              "give a number in seconds",
                              key));
     }
-    return limit / (squeeze(sizes) * (in.dynamics.theta == 0.0 ? chatter(in.contact) : 1.0));
+    return step;
   }
-  const double limit = step_limit(in, sizes.mean(), youngs_modulus, speed);
+  const double speed = input::impact_speed(in, in.layers.thickness);
+  const double limit = input::step_limit(in, sizes.mean(), youngs_modulus, speed);
   if (*asked > limit && in.dynamics.theta == 0.0) {  // implicit steps are stable beyond it
     const bool overdamped = in.contact.damping_ratio > 1.0;
     refuse(in, fmt::format("{}: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m{} and impact speed "
@@ -79,7 +66,7 @@ Stage choose_settling(const input::Input& in, const Sizes& sizes, double time_st
 }
 
 void check_drag(const input::Input& in, const Sizes& sizes, double time_step) {
-  const double limit = mass(in.particles, sizes.smallest()) / in.drag.coefficient;
+  const double limit = input::mass(in.particles, sizes.smallest()) / in.drag.coefficient;
   if (time_step > limit) {
     refuse(in,
            fmt::format("drag.coefficient: {:g} N s/m stops the lightest particle within {:.3g} s, less than one time "
@@ -149,14 +136,8 @@ geometry::Box box_of(const input::Container& container) {
 
 }  // namespace
 
-double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed) {
-  const double x = reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed);
-  return 2.87 * (std::isfinite(x) && x > 0.0 ? elementary::fifth_root(x) : x);
-}
-
 double safe_time_step(const input::Input& in, const Sizes& sizes) {
-  return step_limit(in, sizes.smallest(), in.particles.youngs_modulus, impact_speed(in, in.layers.thickness)) /
-         squeeze(sizes);
+  return input::safe_step(in, range(sizes), in.particles.youngs_modulus);
 }
 
 Scene build(const input::Input& in) {

@@ -60,9 +60,6 @@ struct Scene {
 /// quantities (time step beyond eq. (23), periodic axis below three columns).
 [[nodiscard]] Scene build(const input::Input& in);
 
-/// CC16 eq. (23): duration of a Hertz contact [s], for reduced mass [kg], radius [m], modulus [Pa], impact speed [m/s].
-[[nodiscard]] double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed);
-
 /// The limit of eq. (23) for the smallest particles, duration / 5 [s]. A step between this and the limit of the mean
 /// particle is taken with a warning: the paper's own example 5.2 has one.
 [[nodiscard]] double safe_time_step(const input::Input& in, const Sizes& sizes);

@@ -13,6 +13,7 @@
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
 #include "run/pile.hpp"
+#include "input/time_step.hpp"
 #include "scene/limits.hpp"
 #include "support/scenes.hpp"
 #include "support/tiny_world.hpp"
@@ -39,7 +40,7 @@ scene::Scene rough(double step, double friction) {
   return s;
 }
 
-double weight(const scene::Scene& s) { return scene::mass(s.in.particles, r) * gravity; }
+double weight(const scene::Scene& s) { return input::mass(s.in.particles, r) * gravity; }
 double pair_stiffness() { return 4.0 / 3.0 * 1e8 / (2.0 * (1.0 - 0.0625)) * std::sqrt(0.5 * r); }
 double wall_stiffness() { return 4.0 / 3.0 * 1e8 / (1.0 - 0.0625) * std::sqrt(r); }
 double rolling(const World& world) { return world.store().spin(0)[1] * r; }
@@ -47,8 +48,8 @@ double rolling(const World& world) { return world.store().spin(0)[1] * r; }
 /// Duration of eq. (23) for two of them that meet at `speed`: what steps are measured by.
 double contact(double speed) {
   const scene::Scene s = smooth(1.0);
-  return scene::contact_duration(0.5 * scene::mass(s.in.particles, r), 0.5 * r,
-                                 scene::pair_modulus(s.in.particles, 1e8), speed);
+  return input::contact_duration(0.5 * input::mass(s.in.particles, r), 0.5 * r,
+                                 input::pair_modulus(s.in.particles, 1e8), speed);
 }
 
 // Two spheres that meet at +-v/2, first touching after a fraction of a step: the error would depend on it, so it is the
@@ -79,7 +80,7 @@ double hertz_overlap(double dt) {
       world.step();
       deepest = std::max(deepest, 2.0 * r - (world.position(1)[0] - world.position(0)[0]));
     }
-    const double m = 0.5 * scene::mass(s.in.particles, r);
+    const double m = 0.5 * input::mass(s.in.particles, r);
     return deepest / std::pow(5.0 * m * 0.36 / (4.0 * pair_stiffness()), 0.4) - 1.0;
   });
 }
@@ -156,7 +157,7 @@ double free_fall(double dt) {  // half of the terminal speed
   s.features.drag = true;
   s.in.jamming.gravity = gravity;
   s.in.drag.coefficient = 0.5;
-  const double rate = 0.5 / scene::mass(s.in.particles, r), time = std::log(2.0) / rate;
+  const double rate = 0.5 / input::mass(s.in.particles, r), time = std::log(2.0) / rate;
   const auto steps = std::ceil(time / dt);
   s.time_step = time / steps;
   World world(s);
@@ -171,7 +172,7 @@ double terminal_speed(double dt) {
   s.features.drag = true;
   s.in.jamming.gravity = gravity;
   s.in.drag.coefficient = 0.5;
-  const double rate = 0.5 / scene::mass(s.in.particles, r);
+  const double rate = 0.5 / input::mass(s.in.particles, r);
   World world(s);
   world.add({50.0, 50.0, 50.0}, {});
   world.run(40.0 / rate);

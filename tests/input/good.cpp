@@ -11,9 +11,11 @@
 
 #include "input/fidelity.hpp"
 #include "input/keys.hpp"
+#include "input/radius_range.hpp"
 #include "input/read.hpp"
 #include "input/rhythm.hpp"
 #include "input/starter.hpp"
+#include "input/time_step.hpp"
 #include "input/units.hpp"
 
 namespace packmpi::input {
@@ -249,23 +251,55 @@ TEST(Fidelity, TimesGoWithTheFreeFallThroughALayer) {
   EXPECT_NEAR(heavy.layers.velocity[2], 2.0 * in.layers.velocity[2], 0.01 * -in.layers.velocity[2]);
 }
 
-TEST(Fidelity, LayersAreAsSoftAsThePileBears) {
-  const auto modulus = [](const char* name, const char* particles, const char* radius) {
-    const Input in = with({name, particles, radius});
+constexpr const char* few_sizes =
+    "particles.radius={ distribution = \"uniform\", min = 0.015, max = 0.025, weighting = \"number\" }";
+
+/// What a pile of a scene creeps by, over that of "paper": layers and thaw as "balanced" has them.
+double creep_over_paper(const Input& in) {
+  const RadiusRange radii = radius_range(in.particles.radius);
+  const double t2 = 2.0 * in.layers.thickness / in.jamming.gravity, n = 0.6 / 0.25 * 0.5 / in.layers.thickness;
+  const double window = static_cast<double>(in.dynamics.window);
+  double moves = 0.0;  // layers' durations in which the mean particle moves
+  for (int layer = 0; layer < static_cast<int>(n + 0.5); ++layer) moves += std::min(window, n - layer) / n;
+  const double hard = in.particles.youngs_modulus;
+  const double layers = moves * in.layers.duration * automatic_step(in, radii, in.layers.youngs_modulus.value_or(hard));
+  return (layers + *in.dynamics.thaw * automatic_step(in, radii, hard)) / (0.5 * (n + 1.0) * 1e-3 * t2);
+}
+
+TEST(Fidelity, PilesCreepAsMuchAsTheyAreToWhateverTheirParticles) {
+  const double on = 2.2 * std::sqrt(0.4), off = 1.6 * std::sqrt(0.4);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "particles.youngs_modulus=3e8"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "contact.friction=0.5"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "particles.density=3000.0"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "jamming.gravity=8.0"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "dynamics.rotation=false"})), off, 0.01 * off);
+  const double graded = 2.2 * std::sqrt(2.0 * std::sqrt(0.015 * 0.025) / 0.1);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", few_sizes})), graded, 0.01 * graded);
+}
+
+TEST(Fidelity, LayersAreAsSoftAsThePileBearsAndNoSofterThanItPays) {
+  const auto modulus = [](const char* name, const char* particles) {
+    const Input in = with({name, particles, few_sizes});
     return in.layers.youngs_modulus.value_or(in.particles.youngs_modulus);
   };
-  const char* equal = "particles.radius={ distribution = \"equal\", value = 0.02 }";
-  const char* graded =
-      "particles.radius={ distribution = \"uniform\", min = 0.01, max = 0.02, weighting = \"number\" }";
-  // rho g H_d is 1000 Pa here; 5e3 and 1.5e3 of it are the least
-  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=1e8", equal), 1e7);
-  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=1e8", equal), 1e7);
-  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=1e8", graded), 3e6);
-  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=2e7", graded), 5e6);
-  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=2e7", graded), 1.5e6);
-  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=6e6", equal), 6e6) << "it would gain little";
-  EXPECT_FALSE(with({"fidelity=balanced", "dynamics.rotation=false"}).layers.youngs_modulus.has_value());
-  EXPECT_EQ(with({"fidelity=balanced", "particles.youngs_modulus=6e6"}).dynamics.window, 5);
+  // rho g H_d is 1000 Pa here; 2e3 and 1.3e3 of it are the least
+  EXPECT_GT(with({"fidelity=balanced"}).layers.youngs_modulus, 0.1 * 1e8) << "no softer than the creep asks for";
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=3e10"), 0.06 * 3e10);
+  EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=3e10"), 0.03 * 3e10);
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=1.2e7"), 1.2e7) << "large steps as it is";
+  EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=2e6"), 2e6);
+  const Input high = with({"fidelity=balanced", "container.size=[1.0, 1.0, 5.0]"});
+  EXPECT_EQ(high.layers.youngs_modulus, 2e3 * 1e4) << "the stress of the pile";
+}
+
+TEST(Fidelity, AWindowIsSoManyParticlesDeep) {
+  const auto window = [](const char* radius) {
+    return with({"fidelity=balanced", std::string("particles.radius.value=") + radius}).dynamics.window;
+  };
+  EXPECT_EQ(window("0.02"), 6);  // a layer lifts the pile by 0.0417 m
+  EXPECT_EQ(window("0.01"), 3);
+  EXPECT_EQ(window("0.002"), 3) << "at least";
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "input/time_step.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::scene {
@@ -28,7 +29,7 @@ TEST(ContactDuration, IsEquation23) {
   // Two glass spheres of 10 mm at 20 m/s relative speed: Chung & Ooi give 40.34 us by the exact 2.9433 delta_max / v.
   const double m = 2800.0 * 4.0 / 3.0 * std::numbers::pi * 1e-6;
   const double modulus = 48e9 / (2.0 * (1.0 - 0.04));
-  const double t = contact_duration(0.5 * m, 0.005, modulus, 20.0);
+  const double t = input::contact_duration(0.5 * m, 0.005, modulus, 20.0);
   EXPECT_NEAR(t, 40.34e-6, 0.01 * 40.34e-6);
 }
 
@@ -37,7 +38,7 @@ TEST(Scene, AutoTakesAFifthOfTheContactDuration) {
   in.dynamics.time_step.reset();
   const double m = 1000.0 * 4.0 / 3.0 * std::numbers::pi * 8e-6;
   const double expected =
-      contact_duration(0.5 * m, 0.01, 1e8 / (2.0 * (1.0 - 0.0625)), std::sqrt(2.0 * 2.0 * 0.1)) / 5.0;
+      input::contact_duration(0.5 * m, 0.01, 1e8 / (2.0 * (1.0 - 0.0625)), std::sqrt(2.0 * 2.0 * 0.1)) / 5.0;
   EXPECT_DOUBLE_EQ(build(in).time_step, expected);
 }
 
