@@ -1,6 +1,7 @@
 """What the scripts that measure packs share: scenes that leave their protocol to a preset, one analysis for the packs of any code, where and
 when something was measured, and how a block of a document is written anew."""
 import datetime
+import os
 import statistics
 import subprocess
 from pathlib import Path
@@ -19,8 +20,9 @@ def bare_scene(file, folder):
     lines = (ROOT / f"input/{file}.toml").read_text().splitlines()
     path = Path(folder) / f"{file}.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(line for line in lines if line.split("=")[0].strip() not in own) + "\n")
-    return path
+    fresh = path.with_suffix(f".{os.getpid()}")   # another run of the script may be reading the file
+    fresh.write_text("\n".join(line for line in lines if line.split("=")[0].strip() not in own) + "\n")
+    return fresh.replace(path)
 
 
 def options_of(settings):
