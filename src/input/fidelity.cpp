@@ -67,7 +67,7 @@ Protocol in_plane(const Input& in, const Flat& flat) {
 /// A protocol in space: how long layers settle, and how softly, follows from the creep that they are to have.
 struct Spatial {
   double speed;     ///< at insertion
-  double creep;     ///< over that of "paper" times sqrt(d / h_0)
+  double creep;     ///< over that of "paper", times sqrt(d / h_0) and, of rough particles, less
   double duration;  ///< of a layer, if some softness makes up the creep with it
   double shortest;  ///< of a layer
   double depth;     ///< of the window, in particle diameters
@@ -75,6 +75,12 @@ struct Spatial {
   double thaw_of_layer;  ///< and more for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
   Softness softness;
 };
+
+/// Rough particles pack more loosely, and densify more for as much creep.
+double smoothness(const Input& in) {
+  constexpr double usual = 0.2, least = 0.1;
+  return std::sqrt(std::sqrt(std::sqrt(usual / std::max(least, in.contact.friction))));
+}
 
 /// A pile under "stop" creeps with the step: within one its weight gives a resting contact a slip of g dt^2, so that in
 /// a time T it creeps by g dt T, and the denser it is the more it has crept. "paper" gives a layer 1 s at steps of 1e-4
@@ -96,7 +102,8 @@ Protocol in_space(Input in, const Spatial& rule) {
   const double moving = std::min(static_cast<double>(p.window), layers);
   const double settlings = moving - moving * (moving - 1.0) / (2.0 * layers);  // in how many the mean particle moves
   const double step = automatic_step(in, radii, p.modulus);
-  const double creep = rule.creep * std::sqrt(diameter / h) * 0.5 * (layers + 1.0) * paper * t * t - p.thaw * step;
+  const double share = rule.creep * std::sqrt(diameter / h) * smoothness(in);
+  const double creep = share * 0.5 * (layers + 1.0) * paper * t * t - p.thaw * step;
   const double ratio = creep / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the thaw
   const double wanted =
       ratio > 1.0 ? p.modulus / (ratio * ratio * std::sqrt(ratio)) : p.modulus;  // dt goes with E^-0.4
