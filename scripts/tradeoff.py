@@ -46,15 +46,20 @@ COBBLES = {"container.size": "[2.2,2.2,2.4]", "layers.maximum": "14", "layers.th
            "jamming.gravity": "8.0",
            "particles.radius": '{distribution="bidisperse",small=0.06,large=0.09,large_share=0.5,weighting="mass"}'}
 
-# Two that nothing was chosen by: heavy, smooth, equal, small beside a layer; and rough and graded, large beside it.
+# Heavy, smooth, equal, small beside a layer.
 SHOT = {"container.size": "[1.4,1.4,2.0]", "container.boundary": '["periodic","wall"]', "layers.maximum": "12", "layers.thickness": "0.4",
         "particles.density": "7800.0", "particles.youngs_modulus": "1e9", "particles.poisson_ratio": "0.3", "contact.friction": "0.15",
         "contact.damping_ratio": "0.05", "drag.coefficient": "0.0", "jamming.gravity": "8.0",
         "particles.radius": '{distribution="equal",value=0.05}'}
+# Two that nothing was chosen by: rough and graded, large beside a layer; and small beside it.
 REGOLITH = {"container.size": "[2.6,2.6,2.1]", "layers.maximum": "14", "layers.thickness": "0.35", "particles.density": "1500.0",
             "particles.youngs_modulus": "3e8", "contact.friction": "0.4", "contact.damping_ratio": "0.2", "drag.coefficient": "0.0",
             "jamming.gravity": "7.0",
             "particles.radius": '{distribution="weibull",scale=0.085,shape=5.0,min=0.05,max=0.12,weighting="number"}'}
+GRIT = {"container.size": "[1.0,1.1,1.5]", "container.boundary": '["wall","periodic"]', "layers.maximum": "12", "layers.thickness": "0.3",
+        "particles.density": "2650.0", "particles.youngs_modulus": "5e8", "contact.friction": "0.25", "contact.damping_ratio": "0.3",
+        "drag.coefficient": "0.0", "jamming.gravity": "6.0",
+        "particles.radius": '{distribution="uniform",min=0.03,max=0.05,weighting="number"}'}
 
 # name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
 # `fidelity` alone says how a pack is made.
@@ -73,9 +78,10 @@ SCENES = {
     "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81"),
     "gravel": ("paper_5_3", GRAVEL, 8, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81"),
     "cobbles": ("paper_5_3", COBBLES, 8, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8"),
-    "shot": ("paper_5_3", SHOT, 8, "3D, equal heavy shot of 100 mm, friction 0.15, g 8; **kept apart**"),
+    "shot": ("paper_5_3", SHOT, 8, "3D, equal heavy shot of 100 mm, friction 0.15, g 8"),
     "regolith": ("paper_5_3", REGOLITH, 8, "3D, Weibull regolith of 100 to 240 mm, friction 0.4, g 7; **kept apart**"),
     "regolith_off": ("paper_5_3", {**REGOLITH, **OFF}, 8, "the same, rotation off; **kept apart**"),
+    "grit": ("paper_5_3", GRIT, 8, "3D, uniform grit of 60 to 100 mm, friction 0.25, g 6; **kept apart**"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
 WITHOUT_PRESETS = {"tiny_on"}

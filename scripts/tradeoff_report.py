@@ -67,7 +67,7 @@ def is_2d(scene):
 
 
 def is_graded(scene):
-    return "graded" in scene or scene in ("rock", "gravel", "cobbles", "regolith", "regolith_off")   # their numbers differ from seed to seed
+    return "graded" in scene or scene in ("rock", "gravel", "cobbles", "regolith", "regolith_off", "grit")   # their numbers differ from seed to seed
 
 
 def misses(scene, setting, references, rows, noise):

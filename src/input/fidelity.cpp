@@ -71,6 +71,7 @@ struct Spatial {
   double duration;  ///< of a layer, if some softness makes up the creep with it
   double shortest;  ///< of a layer
   double depth;     ///< of the window, in particle diameters
+  int least_window;
   double thaw;
   double thaw_of_layer;  ///< and more for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
   Softness softness;
@@ -88,15 +89,16 @@ double smoothness(const Input& in) {
 /// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets").
 Protocol in_space(Input in, const Spatial& rule) {
   constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5;
-  constexpr int least_window = 3, most_window = 1000;
+  constexpr int most_window = 1000;
   const double t = fall(in), h = in.layers.thickness, height = in.container.size.back();
   const RadiusRange radii = radius_range(in.particles.radius);
   const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
   const double rise = h * in.layers.fraction / settled_fraction;  // of the pile by a layer
-  Protocol p{.speed = rule.speed * in.jamming.gravity * t,
-             .window = static_cast<int>(within(std::ceil(rule.depth * diameter / rise), least_window, most_window)),
-             .thaw = (rule.thaw + rule.thaw_of_layer * height / h) * t,
-             .modulus = in.particles.youngs_modulus};
+  Protocol p{
+      .speed = rule.speed * in.jamming.gravity * t,
+      .window = static_cast<int>(within(std::ceil(rule.depth * diameter / rise), rule.least_window, most_window)),
+      .thaw = (rule.thaw + rule.thaw_of_layer * height / h) * t,
+      .modulus = in.particles.youngs_modulus};
   in.layers.velocity[in.container.size.size() - 1] = -p.speed;
   const double layers = std::max(height / rise, 1.0);
   const double moving = std::min(static_cast<double>(p.window), layers);
@@ -120,6 +122,7 @@ Protocol draft(const Input& in) {
                        .duration = 0.6,
                        .shortest = 0.6,
                        .depth = 3.5,
+                       .least_window = 3,
                        .thaw = 0.55,
                        .thaw_of_layer = 0.1,
                        .softness = {0.03, 1.3e3}});
@@ -135,6 +138,7 @@ Protocol balanced(const Input& in) {
                        .duration = 0.8,
                        .shortest = 0.7,
                        .depth = 5.6,
+                       .least_window = 5,
                        .thaw = 1.9,
                        .thaw_of_layer = 0.18,
                        .softness = {0.06, 2e3}});
