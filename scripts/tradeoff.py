@@ -28,7 +28,7 @@ BRICK = {"container.size": "[0.6,0.6,0.5]", "layers.maximum": "12"}
 TALL = {"container.size": "[0.6,0.6,1.0]", "layers.maximum": "24"}
 SMALL = {"container.size": "[0.4,0.4,0.33]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "8"}
 TINY = {"container.size": "[0.2,0.2,0.25]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "6"}
-TWELVE = {"layers.maximum": "12"}
+ELEVEN = {"layers.maximum": "11"}
 PERIODIC = {"container.boundary": '["periodic","periodic"]'}
 # Coarse rock, nothing of it as in the paper's examples: size, shape of the grading, density, modulus, friction, damping, gravity.
 ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","periodic"]', "layers.maximum": "12", "layers.thickness": "0.5",
@@ -71,10 +71,10 @@ SCENES = {
     "tall_off": ("paper_5_3", {**TALL, **OFF, "layers.maximum": "23"}, 4, "the same, rotation off"),
     "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 8, "3D, Gaussian, periodic, 12 layers, rotation on"),
     "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 8, "the same, rotation off"),
-    "2d_on": ("paper_5_1", TWELVE, 10, "2D, equal (example 5.1), 12 layers, rotation on"),
-    "2d_off": ("paper_5_1", {**TWELVE, **OFF}, 10, "the same, rotation off"),
-    "2d_graded_on": ("paper_5_2", TWELVE, 10, "2D, Gaussian (example 5.2), 12 layers, rotation on"),
-    "2d_graded_off": ("paper_5_2", {**OFF, "layers.maximum": "11"}, 10, "the same, rotation off"),
+    "2d_on": ("paper_5_1", ELEVEN, 10, "2D, equal (example 5.1), 11 layers, rotation on"),
+    "2d_off": ("paper_5_1", {**ELEVEN, **OFF}, 10, "the same, rotation off"),
+    "2d_graded_on": ("paper_5_2", ELEVEN, 10, "2D, Gaussian (example 5.2), 11 layers, rotation on"),
+    "2d_graded_off": ("paper_5_2", {**ELEVEN, **OFF}, 10, "the same, rotation off"),
     "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81"),
     "gravel": ("paper_5_3", GRAVEL, 8, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81"),
     "cobbles": ("paper_5_3", COBBLES, 8, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8"),

@@ -76,20 +76,36 @@ TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
   EXPECT_LT(record.height, record.height_before_thaw + 1e-3);
 }
 
-TEST(Settle, MoreLayersFollowIfThePileSinksInTheThaw) {
+// A pile of which three layers stand at H_d before the thaw and below it afterwards: by `missed` of what they sink.
+output::RunRecord pack_that_sinks(double duration, double missed) {
   input::Input in = brick();
-  in.layers.duration = 0.4;  // short: much is left to the thaw
+  in.layers.duration = duration;  // short: much is left to the thaw
   in.layers.maximum = 3;
   in.dynamics.window = 1;
   in.dynamics.thaw = 0.8;
   const output::RunRecord three = pack(in);
-  ASSERT_LT(three.height, three.height_before_thaw - 1e-3);
-  in.container.size.back() = 0.5 * (three.height + three.height_before_thaw);  // reached before it, missed after it
+  EXPECT_LT(three.height, three.height_before_thaw - 1e-3);
+  in.container.size.back() = three.height + missed * (three.height_before_thaw - three.height);
   in.layers.maximum = 0;
-  const output::RunRecord record = pack(in);
+  return pack(in);
+}
+
+TEST(Settle, AnotherLayerFollowsAtOnceIfThePileIsGoingToSinkBelowTheHeight) {
+  const output::RunRecord record = pack_that_sinks(0.4, 0.5);
   EXPECT_EQ(record.layers.size(), 4U);
-  EXPECT_EQ(record.thaws, 2);
-  EXPECT_EQ(record.thaw_steps, 8000);
+  EXPECT_GT(record.layers[2].height, record.height_asked);
+  EXPECT_EQ(record.thaws, 1);
+  EXPECT_EQ(record.thaw_steps, 4000);
+  EXPECT_TRUE(record.reached);
+  EXPECT_EQ(record.stop_reason, "height");
+  expect_sound(record);
+}
+
+TEST(Settle, MoreLayersFollowIfThePileSinksInTheThawByMoreThanWasForeseen) {
+  const output::RunRecord record = pack_that_sinks(0.1, 0.02);
+  EXPECT_EQ(record.layers.size(), 4U);
+  EXPECT_GE(record.thaws, 2);
+  EXPECT_EQ(record.thaw_steps, 4000 * record.thaws);
   EXPECT_TRUE(record.reached);
   EXPECT_EQ(record.stop_reason, "height");
   expect_sound(record);
