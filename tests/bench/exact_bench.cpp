@@ -10,10 +10,10 @@
 
 #include "base/error.hpp"
 #include "comm/session.hpp"
+#include "input/time_step.hpp"
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
 #include "run/pile.hpp"
-#include "input/time_step.hpp"
 #include "scene/limits.hpp"
 #include "support/scenes.hpp"
 #include "support/tiny_world.hpp"
