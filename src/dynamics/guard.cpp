@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t most_named = 6;   // neighbours in a message
 constexpr double modest_overlap = 0.1;  // to be had from the modulus that a message suggests
 
-double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 bool is_finite(const particles::Store& store, LocalIndex i) {
   const double sum = norm(store.position(i)) + norm(store.velocity(i)) + norm(store.spin(i)) + store.radius(i);
   return std::isfinite(sum);

@@ -4,6 +4,10 @@
 
 namespace packmpi::input {
 
+/// Radii of more than this ratio are searched for by size (doc/performance.md, "Wide gradings"), and heeded in the
+/// step.
+constexpr double alike_ratio = 2.5;
+
 /// The smallest and the largest radius [m].
 struct RadiusRange {
   double smallest, largest;

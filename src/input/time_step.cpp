@@ -8,18 +8,13 @@
 namespace packmpi::input {
 namespace {
 
-// Radii of more than this ratio count as unlike in the step.
-constexpr double alike = 2.5;
-
-double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 double power(double base, double exponent) { return elementary::exponential(exponent * elementary::logarithm(base)); }
 
 // A large particle that lands on a small one squeezes it q^(6/5) deeper than another small one would, q the ratio of
 // radii, which makes the contact q^(3/10) stiffer in frequency; eq. (23) knows equal ones only.
 double squeeze(const RadiusRange& radii) {
   const double q = radii.largest / radii.smallest;
-  return q > alike ? power(q, 0.3) : 1.0;
+  return q > alike_ratio ? power(q, 0.3) : 1.0;
 }
 
 // "stop" lets a slip end within one step: the larger the step, the more a pile creeps, and the more so the rougher its

@@ -19,8 +19,6 @@ constexpr double coarsest = 1e-3;
 // Collisions pass energy on from large to small: a chain of three elastic impacts gives 7 times the speed.
 constexpr double speed_headroom = 16.0;
 
-double norm(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 // |f| of the near field with a particle one smallest radius away, deep inside contact [N].
 double largest_near_force(const Scene& scene) {
   if (!scene.in.near_field) return 0.0;

@@ -17,8 +17,6 @@ namespace {
 constexpr double skin_per_radius = 0.1;
 // The same for the many small ones of a wide grading, by the mean radius.
 constexpr double skin_per_mean = 0.2;
-// Radii of more than this ratio are searched for by size (doc/performance.md, "Wide gradings").
-constexpr double alike = 2.5;
 
 [[noreturn]] void refuse(const input::Input& in, const std::string& words) {
   throw Error(ExitCode::bad_input, in.file + ": " + words);
@@ -118,7 +116,7 @@ std::int64_t most_columns(const Scene& scene) {
 }
 
 int size_levels(const Sizes& sizes) {
-  if (!(sizes.ratio() > alike)) return 1;
+  if (!(sizes.ratio() > input::alike_ratio)) return 1;
   int levels = 1;
   for (double r = 0.5 * sizes.largest(); r >= sizes.smallest() && levels < 32; r *= 0.5) ++levels;
   return levels;
