@@ -31,6 +31,8 @@ double exponential(double x) noexcept {
   return std::ldexp(series, static_cast<int>(k));
 }
 
+double power(double base, double exponent) noexcept { return exponential(exponent * logarithm(base)); }
+
 double cube_root(double x) noexcept {
   int exponent = 0;
   double mantissa = std::frexp(x, &exponent);  // [0.5, 1)

@@ -9,6 +9,8 @@ namespace packmpi::elementary {
 [[nodiscard]] double logarithm(double x) noexcept;
 /// e^x; 0 below -745, infinity above 709.
 [[nodiscard]] double exponential(double x) noexcept;
+/// base^exponent for finite base > 0.
+[[nodiscard]] double power(double base, double exponent) noexcept;
 /// x^(1/3) for finite x > 0.
 [[nodiscard]] double cube_root(double x) noexcept;
 /// x^(1/5) for finite x > 0.

@@ -61,7 +61,7 @@ double diameter_at(const Curve& curve, Interpolation interpolation, double perce
   if (percent == q) return high;
   const double share = (percent - p) / (q - p);
   if (interpolation == Interpolation::linear) return low + share * (high - low);
-  return std::clamp(low * elementary::exponential(share * elementary::logarithm(high / low)), low, high);
+  return std::clamp(low * elementary::power(high / low, share), low, high);
 }
 
 }  // namespace

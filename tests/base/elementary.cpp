@@ -33,6 +33,10 @@ TEST(Elementary, ExactValues) {
   EXPECT_EQ(exponential(-1000.0), 0.0);
   EXPECT_EQ(exponential(1000.0), std::numeric_limits<double>::infinity());
   for (const double x : {0.001, 0.5, 3.0, 7.0, 1e10}) EXPECT_NEAR(cube_root(x * x * x) / x, 1.0, 3e-16);
+  EXPECT_EQ(power(1.0, 0.3), 1.0);
+  EXPECT_EQ(power(0.37, 0.0), 1.0);
+  EXPECT_NEAR(power(0.4, 0.35), std::pow(0.4, 0.35), 1e-15);
+  EXPECT_NEAR(power(1e6, -1.5) / 1e-9, 1.0, 1e-14);
   for (const double x : {1.0, 32.0, 1.0 / 1024.0}) EXPECT_EQ(fifth_root(x * x * x * x * x), x);
 }
 
