@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "input/keys.hpp"
 #include "input/radius_range.hpp"
 #include "input/time_step.hpp"
@@ -64,10 +65,17 @@ Protocol in_plane(const Input& in, const Flat& flat) {
           .modulus = soft ? softened(in, {0.1, 5e3}, 0.0) : in.particles.youngs_modulus};
 }
 
+/// What a pile is to creep by over what it creeps by under "paper".
+struct Creep {
+  double multiple;     ///< at d = h_0 and the usual friction
+  double by_size;      ///< power of d / h_0
+  double by_friction;  ///< power of the usual friction over the scene's: rough particles densify more for as much creep
+};
+
 /// A protocol in space: how long layers settle, and how softly, follows from the creep that they are to have.
 struct Spatial {
-  double speed;     ///< at insertion
-  double creep;     ///< over that of "paper", times sqrt(d / h_0) and, of rough particles, less
+  double speed;  ///< at insertion
+  Creep creep;
   double duration;  ///< of a layer, if some softness makes up the creep with it
   double shortest;  ///< of a layer
   double depth;     ///< of the window, in particle diameters
@@ -77,16 +85,19 @@ struct Spatial {
   Softness softness;
 };
 
-/// Rough particles pack more loosely, and densify more for as much creep.
-double smoothness(const Input& in) {
-  constexpr double usual = 0.2, least = 0.1;
-  return std::sqrt(std::sqrt(std::sqrt(usual / std::max(least, in.contact.friction))));
+double over_paper(const Input& in, const Creep& creep, double diameter) {
+  constexpr double usual = 0.2, least = 0.1, any = 1e6;
+  const double size = within(diameter / in.layers.thickness, 1.0 / any, any);
+  const double friction = within(in.contact.friction, least, any);
+  return creep.multiple * elementary::power(size, creep.by_size) *
+         elementary::power(usual / friction, creep.by_friction);
 }
 
 /// A pile under "stop" creeps with the step: within one its weight gives a resting contact a slip of g dt^2, so that in
 /// a time T it creeps by g dt T, and the denser it is the more it has crept. "paper" gives a layer 1 s at steps of 1e-4
 /// s, 1e-3 t^2 in its examples, and all that lies below as much again: (n + 1) / 2 times that for the mean particle of
-/// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets").
+/// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets"). Where the shortest
+/// layers would let it creep by too much, the thaw is shorter.
 Protocol in_space(Input in, const Spatial& rule) {
   constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5;
   constexpr int most_window = 1000;
@@ -104,21 +115,25 @@ Protocol in_space(Input in, const Spatial& rule) {
   const double moving = std::min(static_cast<double>(p.window), layers);
   const double settlings = moving - moving * (moving - 1.0) / (2.0 * layers);  // in how many the mean particle moves
   const double step = automatic_step(in, radii, p.modulus);
-  const double share = rule.creep * std::sqrt(diameter / h) * smoothness(in);
-  const double creep = share * 0.5 * (layers + 1.0) * paper * t * t - p.thaw * step;
-  const double ratio = creep / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the thaw
+  const double creep = over_paper(in, rule.creep, diameter) * 0.5 * (layers + 1.0) * paper * t * t;
+  const double left = creep - p.thaw * step;                           // for the layers
+  const double ratio = left / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the thaw
   const double wanted =
       ratio > 1.0 ? p.modulus / (ratio * ratio * std::sqrt(ratio)) : p.modulus;  // dt goes with E^-0.4
   p.modulus = softened(in, rule.softness, wanted);
-  p.duration = within(creep / (settlings * automatic_step(in, radii, p.modulus) * t), rule.shortest, longest) * t;
+  const double of_layers = settlings * automatic_step(in, radii, p.modulus);  // creep over their duration
+  p.duration = within(left / (of_layers * t), rule.shortest, longest) * t;
+  p.thaw = within((creep - of_layers * p.duration) / step, 0.5 * p.thaw, p.thaw);
   return p;
 }
 
-/// All measured and chosen with scripts/tradeoff.py (doc/accuracy.md).
+/// All measured and chosen with scripts/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the rotation:
+/// with it particles roll past each other as well.
 Protocol draft(const Input& in) {
   if (flat(in)) return in_plane(in, {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4, .least_thaw = 1.0});
+  const bool rolls = in.dynamics.rotation;
   return in_space(in, {.speed = 0.6,
-                       .creep = in.dynamics.rotation ? 1.5 : 1.1,
+                       .creep = rolls ? Creep{1.65, 0.5, 0.25} : Creep{0.75, 0.0, 0.35},
                        .duration = 0.6,
                        .shortest = 0.6,
                        .depth = 3.5,
@@ -130,16 +145,17 @@ Protocol draft(const Input& in) {
 
 Protocol balanced(const Input& in) {
   constexpr double rest = 2.4;  // particles harden in half of it
-  if (flat(in) && in.dynamics.rotation)
+  const bool rolls = in.dynamics.rotation;
+  if (flat(in) && rolls)
     return in_plane(in, {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9, .least_thaw = rest});
   if (flat(in)) return in_plane(in, {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58, .least_thaw = rest});
-  return in_space(in, {.speed = in.dynamics.rotation ? 0.3 : 0.2,
-                       .creep = in.dynamics.rotation ? 2.2 : 1.6,
-                       .duration = 0.8,
+  return in_space(in, {.speed = rolls ? 0.3 : 0.2,
+                       .creep = rolls ? Creep{2.45, 0.5, 0.25} : Creep{1.03, 0.0, 0.35},
+                       .duration = rolls ? 0.8 : 0.75,
                        .shortest = 0.7,
                        .depth = 5.6,
                        .least_window = 5,
-                       .thaw = 1.9,
+                       .thaw = rolls ? 1.9 : 2.0,
                        .thaw_of_layer = 0.18,
                        .softness = {0.06, 2e3}});
 }

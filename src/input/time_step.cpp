@@ -8,22 +8,20 @@
 namespace packmpi::input {
 namespace {
 
-double power(double base, double exponent) { return elementary::exponential(exponent * elementary::logarithm(base)); }
-
 // A large particle that lands on a small one squeezes it q^(6/5) deeper than another small one would, q the ratio of
 // radii, which makes the contact q^(3/10) stiffer in frequency; eq. (23) knows equal ones only.
 double squeeze(const RadiusRange& radii) {
   const double q = radii.largest / radii.smallest;
-  return q > alike_ratio ? power(q, 0.3) : 1.0;
+  return q > alike_ratio ? elementary::power(q, 0.3) : 1.0;
 }
 
-// "stop" lets a slip end within one step: the larger the step, the more a pile creeps, and the more so the rougher its
-// grains. Measured (doc/accuracy.md): with this, large steps change packs at friction 0.5 no more than at 0.2.
+// "stop" lets a slip end within one step: the larger the step, the more a pile creeps, and rough grains become denser
+// by it than smooth ones (doc/theory.md, "Time step").
 double chatter(const Contact& contact) {
   constexpr double smooth = 0.2;
   const double friction = std::max(contact.friction, contact.wall_friction);
   const bool stops = contact.regularisation == Regularisation::stop;
-  return stops && friction > smooth ? power(friction / smooth, 0.4) : 1.0;
+  return stops && friction > smooth ? std::sqrt(std::sqrt(friction / smooth)) : 1.0;
 }
 
 }  // namespace

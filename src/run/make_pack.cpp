@@ -102,11 +102,10 @@ void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stan
   record.layers.push_back(stand.row);
 }
 
-// The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink: 0.2 to
-// 0.6 of a layer's rise were measured. A layer too few costs a second final stage, in which all that lies there creeps
-// again.
+// The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink, which
+// doc/accuracy.md measures. A layer too few costs a second final stage, in which all that lies there creeps again.
 double final_height(const scene::Scene& scene, const output::RunRecord& record) {
-  constexpr double of_a_layer = 0.4;
+  const double of_a_layer = scene.features.rotation ? 0.6 : 1.2;
   if (!(scene.thaw > 0.0) || record.layers.empty()) return record.height;
   const bool over = record.thaws > 0 && record.height_before_thaw == record.layers.back().height;
   if (over) return record.height;
