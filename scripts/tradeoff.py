@@ -6,13 +6,14 @@ usage: scripts/tradeoff.py [--scenes brick_on ...] [--knobs presets step ...] [-
 
 A row is not made again while its scene, setting, seed and options are there: stop it at any time, start it again.
 One run at a time, one rank. Seeds are by scene, as few as show what is to be shown on two cores; more: --seeds. All of it
-is about an hour of one core. Packs of a scene hold the same spheres, unless a knob changes the layers.
+is about four hours of one core. Packs of a scene hold the same spheres, unless a knob changes the layers.
 """
 import argparse
 import csv
 import fcntl
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -22,6 +23,7 @@ from pathlib import Path
 
 import measuring
 import tradeoff_report
+from tradeoff_report import is_2d
 
 OFF = {"dynamics.rotation": "false"}
 BRICK = {"container.size": "[0.6,0.6,0.5]", "layers.maximum": "12"}
@@ -51,20 +53,26 @@ SHOT = {"container.size": "[1.4,1.4,2.0]", "container.boundary": '["periodic","w
         "particles.density": "7800.0", "particles.youngs_modulus": "1e9", "particles.poisson_ratio": "0.3", "contact.friction": "0.15",
         "contact.damping_ratio": "0.05", "drag.coefficient": "0.0", "jamming.gravity": "8.0",
         "particles.radius": '{distribution="equal",value=0.05}'}
-# Two that nothing was chosen by: rough and graded, large beside a layer; and small beside it.
+# Rough and graded, large beside a layer.
 REGOLITH = {"container.size": "[2.6,2.6,2.1]", "layers.maximum": "14", "layers.thickness": "0.35", "particles.density": "1500.0",
             "particles.youngs_modulus": "3e8", "contact.friction": "0.4", "contact.damping_ratio": "0.2", "drag.coefficient": "0.0",
             "jamming.gravity": "7.0",
             "particles.radius": '{distribution="weibull",scale=0.085,shape=5.0,min=0.05,max=0.12,weighting="number"}'}
+# Nothing was chosen by the next two: small beside a layer; and small and very rough.
 GRIT = {"container.size": "[1.0,1.1,1.5]", "container.boundary": '["wall","periodic"]', "layers.maximum": "12", "layers.thickness": "0.3",
         "particles.density": "2650.0", "particles.youngs_modulus": "5e8", "contact.friction": "0.25", "contact.damping_ratio": "0.3",
         "drag.coefficient": "0.0", "jamming.gravity": "6.0",
         "particles.radius": '{distribution="uniform",min=0.03,max=0.05,weighting="number"}'}
+SCREE = {"container.size": "[1.3,1.2,1.6]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "12", "layers.thickness": "0.32",
+         "particles.density": "2700.0", "particles.youngs_modulus": "6e8", "contact.friction": "0.45", "contact.damping_ratio": "0.25",
+         "drag.coefficient": "0.0", "jamming.gravity": "3.7",
+         "particles.radius": '{distribution="lognormal",median=0.04,log_sd=0.25,min=0.025,max=0.06,weighting="mass"}'}
+ELEVEN_OFF = {**ELEVEN, **OFF}   # looser packs need fewer layers; as many under each preset
 
 # name: file, changes, seeds, words. The paper's own step and duration stand in the files and are left out, so that
 # `fidelity` alone says how a pack is made.
 SCENES = {
-    "small_on": ("paper_5_3", SMALL, 8, "3D, equal, periodic, 8 layers, rotation on"),
+    "small_on": ("paper_5_3", SMALL, 10, "3D, equal, periodic, 8 layers, rotation on"),
     "brick_on": ("paper_5_3", BRICK, 8, "3D, equal, 12 layers, rotation on"),
     "brick_off": ("paper_5_3", {**BRICK, **OFF}, 8, "the same, rotation off"),
     "tall_on": ("paper_5_3", TALL, 4, "3D, equal, 24 layers, rotation on"),
@@ -72,16 +80,23 @@ SCENES = {
     "graded_on": ("paper_5_4", {**BRICK, **PERIODIC}, 8, "3D, Gaussian, periodic, 12 layers, rotation on"),
     "graded_off": ("paper_5_4", {**BRICK, **PERIODIC, **OFF}, 8, "the same, rotation off"),
     "2d_on": ("paper_5_1", ELEVEN, 10, "2D, equal (example 5.1), 11 layers, rotation on"),
-    "2d_off": ("paper_5_1", {**ELEVEN, **OFF}, 10, "the same, rotation off"),
+    "2d_off": ("paper_5_1", ELEVEN_OFF, 10, "the same, rotation off"),
     "2d_graded_on": ("paper_5_2", ELEVEN, 10, "2D, Gaussian (example 5.2), 11 layers, rotation on"),
-    "2d_graded_off": ("paper_5_2", {**ELEVEN, **OFF}, 10, "the same, rotation off"),
+    "2d_graded_off": ("paper_5_2", ELEVEN_OFF, 10, "the same, rotation off"),
+    "rough_off": ("paper_5_3", {**BRICK, **OFF, "contact.friction": "0.4", "container.size": "[0.6,0.6,0.54]"}, 8,
+                  "3D, equal, 12 layers, friction 0.4, rotation off"),
     "rock": ("paper_5_3", ROCK, 8, "3D, lognormal rock of 65 to 150 mm, friction 0.5, g 9.81"),
+    "rock_off": ("paper_5_3", {**ROCK, **ELEVEN_OFF}, 8, "the same, rotation off"),
     "gravel": ("paper_5_3", GRAVEL, 8, "3D, uniform gravel of 40 to 90 mm, friction 0.35, g 9.81"),
+    "gravel_off": ("paper_5_3", {**GRAVEL, **OFF}, 8, "the same, rotation off"),
     "cobbles": ("paper_5_3", COBBLES, 8, "3D, bidisperse cobbles of 120 and 180 mm, friction 0.3, g 8"),
     "shot": ("paper_5_3", SHOT, 8, "3D, equal heavy shot of 100 mm, friction 0.15, g 8"),
-    "regolith": ("paper_5_3", REGOLITH, 8, "3D, Weibull regolith of 100 to 240 mm, friction 0.4, g 7; **kept apart**"),
-    "regolith_off": ("paper_5_3", {**REGOLITH, **OFF}, 8, "the same, rotation off; **kept apart**"),
+    "regolith": ("paper_5_3", REGOLITH, 8, "3D, Weibull regolith of 100 to 240 mm, friction 0.4, g 7"),
+    "regolith_off": ("paper_5_3", {**REGOLITH, **OFF, "layers.maximum": "13"}, 8, "the same, rotation off"),
     "grit": ("paper_5_3", GRIT, 8, "3D, uniform grit of 60 to 100 mm, friction 0.25, g 6; **kept apart**"),
+    "grit_off": ("paper_5_3", {**GRIT, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
+    "scree": ("paper_5_3", SCREE, 8, "3D, lognormal scree of 50 to 120 mm, friction 0.45, g 3.7; **kept apart**"),
+    "scree_off": ("paper_5_3", {**SCREE, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }
 WITHOUT_PRESETS = {"tiny_on"}
@@ -89,15 +104,29 @@ PAPER = {"fidelity": "paper"}
 REFERENCE = "paper"
 
 
-def down(speed):
-    return {"layers.velocity": f"[0.0,0.0,-{speed}]"}
-
-
 def viscous(slip_time):
     return {"contact.regularisation": "viscous", "contact.slip_time": slip_time}
 
 
-# knob: {setting: options}
+# Of the examples' layers: thickness and phi_0 in 3D and in the plane.
+LAYERS_3D, LAYERS_2D = {"thickness": 0.1, "fraction": 0.25}, {"thickness": 0.1, "fraction": 0.4}
+
+
+def down(speed):
+    """Options of a scene that insert at this speed."""
+    return lambda scene: {"layers.velocity": f"[0.0,-{speed}]" if is_2d(scene) else f"[0.0,0.0,-{speed}]"}
+
+
+def layers(key, factor):
+    """Options of a scene that make its layers so many times as thick or as full, and as many fewer of them."""
+    def options(scene):
+        usual = (LAYERS_2D if is_2d(scene) else LAYERS_3D)[key]
+        most = int(SCENES[scene][1]["layers.maximum"])
+        return {f"layers.{key}": f"{usual * factor:.4g}", "layers.maximum": str(int(most / factor))}
+    return options
+
+
+# knob: {setting: options, or a function of the scene that gives them}
 KNOBS = {
     "presets": {"balanced": {"fidelity": "balanced"}, "draft": {"fidelity": "draft"}},
     "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.4e-4", "3e-4")},
@@ -108,10 +137,8 @@ KNOBS = {
                 "settled, limits 3 times wider": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-3", "dynamics.settled_drift": "1.5e-2"},
                 "settled, limits 3 times tighter": {"dynamics.stop": "settled", "dynamics.settled_energy": "3e-4",
                                                     "dynamics.settled_drift": "1.5e-3"}},
-    "layers": {"layers half as thick": {"layers.thickness": "0.05", "layers.maximum": "16"},
-               "layers twice as thick": {"layers.thickness": "0.2", "layers.maximum": "4"},
-               "phi_0 0.125": {"layers.fraction": "0.125", "layers.maximum": "16"},
-               "phi_0 0.20": {"layers.fraction": "0.20", "layers.maximum": "10"}},
+    "layers": {"layers 0.75 times as thick": layers("thickness", 0.75), "layers twice as thick": layers("thickness", 2.0),
+               "phi_0 halved": layers("fraction", 0.5), "phi_0 0.8 times": layers("fraction", 0.8)},
     "stiffness": {"E 1e7 throughout": {"particles.youngs_modulus": "1e7"},
                   **{f"E {e} in layers, hardened in 0.9 s": {"layers.youngs_modulus": e, "dynamics.thaw": "0.9"} for e in ("3e7", "1e7", "3e6")}},
     "friction": {"friction viscous, slip time 2e-4": viscous("2e-4"), "friction viscous, slip time 1e-3": viscous("1e-3"),
@@ -123,8 +150,8 @@ KNOBS = {
                  for theta, dt in (("0.5", "2e-4"), ("0.5", "5e-4"), ("1", "5e-4"), ("1", "1e-3"), ("1", "2e-3"), ("1", "5e-3"))},
     "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},
 }
-SEEDS_OF_KNOBS = 4
-KNOB_SCENES = {"precision": ("small_on", "graded_on", "2d_on"), "implicit": ("tiny_on",)}   # where not on --knob-scenes
+KNOB_SCENES = {"small_on": 10, "2d_on": 10, "graded_on": 4, "tall_on": 2}   # where single knobs are turned, seeds
+IMPLICIT_SCENES = {"tiny_on": 4}
 
 def planned(options):
     """(scene, setting, options of the program, seed), the references of each scene first."""
@@ -138,10 +165,12 @@ def planned(options):
                                     **(KNOBS["presets"] if "presets" in options.knobs and scene not in WITHOUT_PRESETS else {})}.items():
                 runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
         for knob in options.knobs:
-            if scene not in KNOB_SCENES.get(knob, options.knob_scenes):
+            chosen = IMPLICIT_SCENES if knob == "implicit" else {name: KNOB_SCENES[name] for name in options.knob_scenes}
+            if scene not in chosen:
                 continue
             for setting, values in KNOBS[knob].items() if knob != "presets" else ():
-                for seed in range(1, (options.seeds or SEEDS_OF_KNOBS) + 1):
+                values = values(scene) if callable(values) else values
+                for seed in range(1, (options.seeds or chosen[scene]) + 1):
                     runs.append((scene, setting, {**changes, **PAPER, **values}, seed))
     return runs
 
@@ -183,21 +212,24 @@ def make(options, scene, setting, values, seed):
     row = {"commit": options.commit, "scene": scene, "setting": setting, "seed": seed, "exit": done.returncode,
            "cpu_seconds": f"{cpu:.2f}", "options": " ".join(words[1::2])}
     if done.returncode not in (0, 3):
-        row["words"] = done.stderr.strip().splitlines()[-1].split(".toml: ")[-1][:300]
+        words = done.stderr.strip().splitlines()[-1].split(".toml: ")[-1]
+        row["words"] = re.sub(r"^[0-9:]+ E |--set \S+ ", "", words)[:300]
         return row
     got = json.loads((folder / f"{file}.json").read_text())
     row["contact_evaluations"] = got["counters"]["pair_steps"]["sum"]
     layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
-    row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep",
+    row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep", "thaws",
                                       "particle_steps")}
     row |= {"layers": len(layers), "largest_overlap": audit["worst_overlap"], "floor_over_weight": got["floor_force"] / got["weight"],
             "kinetic_per_mgd": got["kinetic_energy"] / (got["weight"] * 2.0 * got["mean_radius"])}
+    row["sunk"] = (got["height_before_thaw"] - got["height"]) / got["height"] * len(layers) if got["thaws"] else 0.0
     row |= curves(options, folder / f"{file}.hdf", asked["height_asked"])
     return {key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()}
 
 
 COLUMNS = ["scene", "setting", "seed", "commit", "exit", "particles", "layers", "height", "phi", "phi_bulk", "coordination", "held_coordination",
-           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps", "contact_evaluations", "cpu_seconds",
+           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps",
+           "contact_evaluations", "cpu_seconds", "thaws", "sunk",
            "profile", "g", "forces", "options", "words"]
 
 
@@ -257,7 +289,7 @@ def parse():
     parser.add_argument("--seeds", type=int, help="seeds 1 .. N in every scene")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--knobs", nargs="*", choices=KNOBS, default=list(KNOBS))
-    parser.add_argument("--knob-scenes", nargs="+", choices=SCENES, default=["small_on"], help="where single knobs are turned")
+    parser.add_argument("--knob-scenes", nargs="+", choices=KNOB_SCENES, default=list(KNOB_SCENES), help="where single knobs are turned")
     parser.add_argument("--no-references", action="store_true", help="leave the references to another run")
     parser.add_argument("--report-only", action="store_true", help="report on the runs there are")
     parser.add_argument("--fresh", action="store_true", help="make every run again")
