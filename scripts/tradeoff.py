@@ -63,9 +63,9 @@ GRIT = {"container.size": "[1.0,1.1,1.5]", "container.boundary": '["wall","perio
         "particles.density": "2650.0", "particles.youngs_modulus": "5e8", "contact.friction": "0.25", "contact.damping_ratio": "0.3",
         "drag.coefficient": "0.0", "jamming.gravity": "6.0",
         "particles.radius": '{distribution="uniform",min=0.03,max=0.05,weighting="number"}'}
-SCREE = {"container.size": "[1.3,1.2,1.6]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "12", "layers.thickness": "0.32",
+SCREE = {"container.size": "[1.0,0.9,1.6]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "12", "layers.thickness": "0.32",
          "particles.density": "2700.0", "particles.youngs_modulus": "6e8", "contact.friction": "0.45", "contact.damping_ratio": "0.25",
-         "drag.coefficient": "0.0", "jamming.gravity": "3.7",
+         "drag.coefficient": "0.0", "jamming.gravity": "6.4",
          "particles.radius": '{distribution="lognormal",median=0.04,log_sd=0.25,min=0.025,max=0.06,weighting="mass"}'}
 ELEVEN_OFF = {**ELEVEN, **OFF}   # looser packs need fewer layers; as many under each preset
 
@@ -95,7 +95,7 @@ SCENES = {
     "regolith_off": ("paper_5_3", {**REGOLITH, **OFF, "layers.maximum": "13"}, 8, "the same, rotation off"),
     "grit": ("paper_5_3", GRIT, 8, "3D, uniform grit of 60 to 100 mm, friction 0.25, g 6; **kept apart**"),
     "grit_off": ("paper_5_3", {**GRIT, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
-    "scree": ("paper_5_3", SCREE, 8, "3D, lognormal scree of 50 to 120 mm, friction 0.45, g 3.7; **kept apart**"),
+    "scree": ("paper_5_3", SCREE, 8, "3D, lognormal scree of 50 to 120 mm, friction 0.45, g 6.4; **kept apart**"),
     "scree_off": ("paper_5_3", {**SCREE, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),
 }

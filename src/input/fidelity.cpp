@@ -97,9 +97,9 @@ double over_paper(const Input& in, const Creep& creep, double diameter) {
 /// a time T it creeps by g dt T, and the denser it is the more it has crept. "paper" gives a layer 1 s at steps of 1e-4
 /// s, 1e-3 t^2 in its examples, and all that lies below as much again: (n + 1) / 2 times that for the mean particle of
 /// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets"). Where the shortest
-/// layers would let it creep by too much, the thaw is shorter.
+/// layers would let it creep by too much, the thaw is a little shorter.
 Protocol in_space(Input in, const Spatial& rule) {
-  constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5;
+  constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5, least_thaw = 0.95;
   constexpr int most_window = 1000;
   const double t = fall(in), h = in.layers.thickness, height = in.container.size.back();
   const RadiusRange radii = radius_range(in.particles.radius);
@@ -123,7 +123,7 @@ Protocol in_space(Input in, const Spatial& rule) {
   p.modulus = softened(in, rule.softness, wanted);
   const double of_layers = settlings * automatic_step(in, radii, p.modulus);  // creep over their duration
   p.duration = within(left / (of_layers * t), rule.shortest, longest) * t;
-  p.thaw = within((creep - of_layers * p.duration) / step, 0.5 * p.thaw, p.thaw);
+  p.thaw = within((creep - of_layers * p.duration) / step, least_thaw * p.thaw, p.thaw);
   return p;
 }
 
@@ -150,7 +150,7 @@ Protocol balanced(const Input& in) {
     return in_plane(in, {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9, .least_thaw = rest});
   if (flat(in)) return in_plane(in, {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58, .least_thaw = rest});
   return in_space(in, {.speed = rolls ? 0.3 : 0.2,
-                       .creep = rolls ? Creep{2.45, 0.5, 0.25} : Creep{1.03, 0.0, 0.35},
+                       .creep = rolls ? Creep{2.45, 0.5, 0.25} : Creep{1.14, 0.15, 0.35},
                        .duration = rolls ? 0.8 : 0.75,
                        .shortest = 0.7,
                        .depth = 5.6,
