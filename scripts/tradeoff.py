@@ -94,7 +94,7 @@ SCENES = {
     "regolith": ("paper_5_3", REGOLITH, 8, "3D, Weibull regolith of 100 to 240 mm, friction 0.4, g 7"),
     "regolith_off": ("paper_5_3", {**REGOLITH, **OFF, "layers.maximum": "13"}, 8, "the same, rotation off"),
     "grit": ("paper_5_3", GRIT, 8, "3D, uniform grit of 60 to 100 mm, friction 0.25, g 6; **kept apart**"),
-    "grit_off": ("paper_5_3", {**GRIT, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
+    "grit_off": ("paper_5_3", {**GRIT, **ELEVEN_OFF}, 8, "the same, rotation off"),
     "scree": ("paper_5_3", SCREE, 8, "3D, lognormal scree of 50 to 120 mm, friction 0.45, g 6.4; **kept apart**"),
     "scree_off": ("paper_5_3", {**SCREE, **ELEVEN_OFF}, 8, "the same, rotation off; **kept apart**"),
     "tiny_on": ("paper_5_3", TINY, 4, "3D, equal, periodic, 6 layers, rotation on; for the implicit steps"),

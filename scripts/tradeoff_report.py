@@ -195,7 +195,7 @@ def plot(path, rows, knobs, scenes, reference):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 4.6), sharey=True)
     scene = "small_on"
     references, noise = made(rows, scene, reference), Noise(rows, scene)
     for k, (knob, settings) in enumerate(knobs.items()):
@@ -223,7 +223,8 @@ def plot(path, rows, knobs, scenes, reference):
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter("")
         axes.set_xlabel("times fewer particle-steps than \"paper\"")
-        axes.legend(fontsize=7, loc="lower left" if axes is left else "upper right", ncols=1 if axes is left else 2)
+    left.legend(fontsize=7, loc="lower left")
+    right.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     left.set_ylabel("phi_bulk - that of \"paper\"")
     figure.tight_layout()
     figure.savefig(path, dpi=110)
