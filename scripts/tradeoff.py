@@ -6,7 +6,7 @@ usage: scripts/tradeoff.py [--scenes brick_on ...] [--knobs presets step ...] [-
 
 A row is not made again while its scene, setting, seed and options are there: stop it at any time, start it again.
 One run at a time, one rank. Seeds are by scene, as few as show what is to be shown on two cores; more: --seeds. All of it
-is about four hours of one core. Packs of a scene hold the same spheres, unless a knob changes the layers.
+is about two and a half hours of one core. Packs of a scene hold the same spheres, unless a knob changes the layers.
 """
 import argparse
 import csv

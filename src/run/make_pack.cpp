@@ -102,14 +102,20 @@ void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stan
   record.layers.push_back(stand.row);
 }
 
-// The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink, which
-// doc/accuracy.md measures. A layer too few costs a second final stage, in which all that lies there creeps again.
+// What a pile sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
+double sinking(const input::Input& in) {
+  constexpr double rough = 0.3;
+  if (in.dynamics.rotation) return 0.45;
+  return in.contact.friction > rough ? 1.1 : 0.6;
+}
+
+// The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
+// too few costs a second final stage, in which all that lies there creeps again.
 double final_height(const scene::Scene& scene, const output::RunRecord& record) {
-  const double of_a_layer = scene.features.rotation ? 0.6 : 1.2;
   if (!(scene.thaw > 0.0) || record.layers.empty()) return record.height;
   const bool over = record.thaws > 0 && record.height_before_thaw == record.layers.back().height;
   if (over) return record.height;
-  return record.height - of_a_layer * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  return record.height - sinking(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
 // The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.
