@@ -103,7 +103,7 @@ void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stan
 }
 
 // What a pile sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
-double sinking(const input::Input& in) {
+double sinks_by(const input::Input& in) {
   constexpr double rough = 0.3;
   if (in.dynamics.rotation) return 0.45;
   return in.contact.friction > rough ? 1.1 : 0.6;
@@ -115,7 +115,7 @@ double final_height(const scene::Scene& scene, const output::RunRecord& record) 
   if (!(scene.thaw > 0.0) || record.layers.empty()) return record.height;
   const bool over = record.thaws > 0 && record.height_before_thaw == record.layers.back().height;
   if (over) return record.height;
-  return record.height - sinking(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  return record.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
 // The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.

@@ -47,8 +47,8 @@ double integral(double a, double b, int e) { return e == 0 ? logarithm(b / a) : 
 // r with integral(a, r, e) = share * integral(a, b, e).
 double inverse(double a, double b, int e, double share) {
   if (!(a < b)) return a;
-  const double r = e == 0 ? a * elementary::power(b / a, share)
-                          : rooted(raised(a, e) + share * (raised(b, e) - raised(a, e)), e);
+  const double r =
+      e == 0 ? a * elementary::power(b / a, share) : rooted(raised(a, e) + share * (raised(b, e) - raised(a, e)), e);
   return std::clamp(r, a, b);
 }
 
