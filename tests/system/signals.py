@@ -29,7 +29,7 @@ radius = { distribution = "equal", value = 0.02 }
 [layers]
 thickness = 0.1
 fraction = 0.2
-duration = 1.5
+duration = 4.0   # stops are looked for once a second: a run of several on a fast machine
 [jamming]
 gravity = 5.0
 [dynamics]
