@@ -158,7 +158,8 @@ def with_error(values, digits):
 
 
 def version(words, pattern):
-    said = subprocess.run(words, text=True, capture_output=True, stdin=subprocess.DEVNULL, check=False).stdout
+    with tempfile.TemporaryDirectory() as folder:   # LIGGGHTS leaves a log where it is asked
+        said = subprocess.run(words, text=True, capture_output=True, stdin=subprocess.DEVNULL, cwd=folder, check=False).stdout
     got = re.search(pattern, said)
     return got[1] if got else "of unknown version"
 

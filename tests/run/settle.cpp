@@ -111,6 +111,29 @@ TEST(Settle, MoreLayersFollowIfThePileSinksInTheThawByMoreThanWasForeseen) {
   expect_sound(record);
 }
 
+// Layers of a pile whose third one stands above H_d by `share` of its rise before a short final stage.
+std::size_t layers_if_above(double share, bool rotation, double friction) {
+  input::Input in = brick();
+  in.dynamics.rotation = rotation;
+  in.contact.friction = in.contact.wall_friction = friction;
+  in.dynamics.thaw = 0.05;
+  in.layers.maximum = 3;
+  const double rise = in.layers.thickness * in.layers.fraction / 0.58;
+  in.container.size.back() = pack(in).height_before_thaw - share * rise;
+  in.layers.maximum = 0;
+  const output::RunRecord record = pack(in);
+  EXPECT_EQ(record.thaws, 1);
+  return record.layers.size();
+}
+
+TEST(Settle, RoughParticlesWithoutSpinAreExpectedToSinkFarther) {
+  EXPECT_EQ(layers_if_above(0.3, true, 0.4), 4U);
+  EXPECT_EQ(layers_if_above(0.7, true, 0.4), 3U);
+  EXPECT_EQ(layers_if_above(0.4, false, 0.2), 4U);
+  EXPECT_EQ(layers_if_above(0.8, false, 0.2), 3U);
+  EXPECT_EQ(layers_if_above(0.8, false, 0.4), 4U);
+}
+
 TEST(Settle, AWindowOfAllLayersIsNoWindow) {
   input::Input in = brick();
   in.dynamics.thaw = 0.1;
