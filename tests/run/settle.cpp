@@ -114,6 +114,7 @@ TEST(Settle, MoreLayersFollowIfThePileSinksInTheThawByMoreThanWasForeseen) {
 // Layers of a pile whose third one stands above H_d by `share` of its rise before a short final stage.
 std::size_t layers_if_above(double share, bool rotation, double friction) {
   input::Input in = brick();
+  in.layers.duration = 0.4;
   in.dynamics.rotation = rotation;
   in.contact.friction = in.contact.wall_friction = friction;
   in.dynamics.thaw = 0.05;
