@@ -145,7 +145,6 @@ KNOBS = {
                  "friction without a cap": {"contact.regularisation": "none"}},
     "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5")},
     "thaw": {f"window 3, thaw {t} s": {"dynamics.window": "3", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
-    "precision": {"mixed precision": {"dynamics.precision": "mixed"}},
     "implicit": {f"theta {theta}, dt {dt}": {"dynamics.theta": theta, "dynamics.time_step": dt}
                  for theta, dt in (("0.5", "2e-4"), ("0.5", "5e-4"), ("1", "5e-4"), ("1", "1e-3"), ("1", "2e-3"), ("1", "5e-3"))},
     "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},

@@ -29,16 +29,15 @@ struct Memory {
 };
 
 /// Pairs (or wall contacts) in flight. Rows of `place` and then of `in` are the fields of a record, differences or sums
-/// over the pair; rows of `out` are accumulators. R: double, or float in scenes of mixed precision; places stay double.
-template <class R>
+/// over the pair; rows of `out` are accumulators.
 struct Block {
   static constexpr int size = 128;
   static constexpr int row = size + 8;        // rows a power of two apart would share cache sets
   static constexpr int places = 4;            // fields in `place`
   alignas(64) double place[places + 1][row];  // the last: the distance of a wall
-  alignas(64) R in[8][row];                   // from field number `places` on
+  alignas(64) double in[8][row];              // from field number `places` on
   alignas(64) std::int64_t out[8][row];
-  alignas(64) R strength[size];
+  alignas(64) double strength[size];
   alignas(64) LocalIndex first[size];  // slots of records; filled up to a multiple of 8 with the last pair
   alignas(64) LocalIndex second[size];
   alignas(64) LocalIndex first_slot[size];  // slots of accumulators; the fill and ghosts go to the dump
@@ -57,8 +56,7 @@ struct Tally {
 };
 
 /// The largest of `count` (a multiple of 4) numbers and `so_far`; NaN if one of them is not finite.
-template <class R>
-PACKMPI_INLINE double largest(const R* x, int count, double so_far) {
+PACKMPI_INLINE double largest(const double* x, int count, double so_far) {
   Lanes most = spread(so_far);
   BitLanes broken = {};
   for (int p = 0; p < count; p += 4) {
@@ -73,8 +71,7 @@ PACKMPI_INLINE double largest(const R* x, int count, double so_far) {
 }
 
 /// Take up to a block of pairs, as many as the ring holds above `base`, the lowest slot in use.
-template <class R>
-PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block<R>& b) {
+PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block& b) {
   const std::int64_t left = data.pairs - pair;
   const int wanted = left < b.size ? static_cast<int>(left) : b.size;
   const LocalIndex* first = data.first + pair;
@@ -111,7 +108,7 @@ PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex bas
 
 /// Stage 1: records of both ends, differences and sums, transposed.
 template <Features F>
-PACKMPI_INLINE void pack(const double* records, Block<Real<F>>& b) {
+PACKMPI_INLINE void pack(const double* records, Block& b) {
   using M = Memory<F>;
   constexpr int stride = M::stride;
   const std::int64_t ahead = b.reach + 80;  // records that the next blocks will be the first to touch
@@ -142,7 +139,7 @@ PACKMPI_INLINE void pack(const double* records, Block<Real<F>>& b) {
 /// Stage 3: integers back to one vector a pair, added to the accumulators of the first, and of the second with the
 /// reaction: forces change sign, moments do not.
 template <Features F>
-PACKMPI_INLINE void scatter(std::int64_t* ring, Block<Real<F>>& b) {
+PACKMPI_INLINE void scatter(std::int64_t* ring, Block& b) {
   constexpr int accumulators = Memory<F>::accumulators;
   constexpr int forces = Memory<F>::forces;
   constexpr int moments = Memory<F>::moments;

@@ -11,13 +11,13 @@ namespace packmpi::dynamics::PACKMPI_KERNEL {
 template <Features F>
 struct Stepper {
   const StepData& data;
-  Constants<Real<F>> pair = constants_of<Real<F>>(data.law, data.law.pair);
-  Constants<Real<F>> wall = constants_of<Real<F>>(data.law, data.law.wall);
+  Constants pair = constants_of(data.law, data.law.pair);
+  Constants wall = constants_of(data.law, data.law.wall);
   Periods periods = periods_of(data);
   Motion motion = motion_of<F>(data);
   double scale = 1.0 / data.force_quantum;
   Tally tally{};
-  Block<Real<F>> block;  // 30 KB, on the stack
+  Block block;  // 30 KB, on the stack
   LocalIndex done;
   std::int64_t walls_done = 0;
 
@@ -76,17 +76,15 @@ static StepReport step(const StepData& data) {
 }
 
 /// The kernels there are, by number: which moving parts (0 none, 1 friction, 2 friction and rotation), then three
-/// switches. From 24 on in mixed precision, always with drag: without it the coefficient is zero.
-constexpr int kernels_of_a_precision = 24;
+/// switches.
+constexpr int kernel_count = 24;
 
 constexpr Features features_of(int number) {
   Features f;
   f.dimension = PACKMPI_DIMENSION;
-  f.mixed = number >= kernels_of_a_precision;
-  number %= kernels_of_a_precision;
   f.rotation = number / 8 == 2;
   f.friction = number / 8 >= 1;
-  f.drag = (number & 1) != 0 || f.mixed;
+  f.drag = (number & 1) != 0;
   f.graded = (number & 2) != 0;
   f.periodic = (number & 4) != 0;
   f.near_field = false;
@@ -99,12 +97,11 @@ template <int... Number>
 struct Table<std::integer_sequence<int, Number...>> {
   static constexpr Kernel kernels[] = {&step<features_of(Number)>...};
 };
-using Kernels = Table<std::make_integer_sequence<int, 2 * kernels_of_a_precision>>;
+using Kernels = Table<std::make_integer_sequence<int, kernel_count>>;
 
 Kernel kernel(const Features& f) {
   const int moving = f.rotation ? 2 : (f.friction ? 1 : 0);  // spin without friction is rare: friction zero does it
-  const int number = moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0);
-  return Kernels::kernels[number + (f.mixed ? kernels_of_a_precision : 0)];
+  return Kernels::kernels[moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0)];
 }
 
 }  // namespace packmpi::dynamics::PACKMPI_KERNEL

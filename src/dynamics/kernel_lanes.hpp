@@ -13,14 +13,9 @@ using IntLanes = std::int64_t __attribute__((vector_size(32)));
 using BitLanes = std::uint64_t __attribute__((vector_size(32)));  // sums wrap: only the dump slot ever does
 using LanesInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 using BitLanesInMemory = std::uint64_t __attribute__((vector_size(32), aligned(8), may_alias));
-using HalfLanes = float __attribute__((vector_size(16)));  // as many numbers in half the bytes
-using HalfLanesInMemory = float __attribute__((vector_size(16), aligned(4), may_alias));
 using HalfInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 
 PACKMPI_INLINE Lanes load(const double* p) { return *reinterpret_cast<const LanesInMemory*>(p); }
-PACKMPI_INLINE Lanes load(const float* p) {
-  return __builtin_convertvector(*reinterpret_cast<const HalfLanesInMemory*>(p), Lanes);
-}
 PACKMPI_INLINE void store(double* p, Lanes a) { *reinterpret_cast<LanesInMemory*>(p) = a; }
 PACKMPI_INLINE BitLanes load_bits(const std::int64_t* p) { return *reinterpret_cast<const BitLanesInMemory*>(p); }
 PACKMPI_INLINE void store_bits(std::int64_t* p, BitLanes a) { *reinterpret_cast<BitLanesInMemory*>(p) = a; }
@@ -40,28 +35,13 @@ PACKMPI_INLINE Lanes magnitude(Lanes a) {
   return as_doubles(as_bits(a) & BitLanes{all_but_sign, all_but_sign, all_but_sign, all_but_sign});
 }
 
-/// Narrowed to `float`, or as they are.
-PACKMPI_INLINE void store(float* p, Lanes a) {
-  *reinterpret_cast<HalfLanesInMemory*>(p) = __builtin_convertvector(a, HalfLanes);
-}
-
 /// A root or quotient of a sum of squares that may be zero stays finite with this added. Far below the square of any
 /// distance or speed that matters.
-template <class R>
-constexpr R tiny() {
-  return static_cast<R>(sizeof(R) == sizeof(double) ? 1e-300 : 1e-36);
-}
-template <class R>
-constexpr double largest_number() {
-  return sizeof(R) == sizeof(double) ? __DBL_MAX__ : static_cast<double>(__FLT_MAX__);
-}
+constexpr double tiny = 1e-300;
 
 PACKMPI_INLINE double root(double x) { return __builtin_sqrt(x); }
-PACKMPI_INLINE float root(float x) { return __builtin_sqrtf(x); }
 PACKMPI_INLINE double magnitude(double x) { return __builtin_fabs(x); }
-PACKMPI_INLINE float magnitude(float x) { return __builtin_fabsf(x); }
 PACKMPI_INLINE double with_sign_of(double x, double sign) { return __builtin_copysign(x, sign); }
-PACKMPI_INLINE float with_sign_of(float x, float sign) { return __builtin_copysignf(x, sign); }
 
 /// Rows become columns.
 template <class V>

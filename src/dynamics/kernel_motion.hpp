@@ -21,24 +21,24 @@ PACKMPI_INLINE Plane plane_of(const StepData& data, neighbor::Wall wall) {
 
 /// Fill entry p of the block for one particle at one wall: the wall is a second end at rest.
 template <Features F>
-PACKMPI_INLINE void put_wall(const StepData& data, Block<Real<F>>& b, int p, LocalIndex particle, neighbor::Wall wall) {
+PACKMPI_INLINE void put_wall(const StepData& data, Block& b, int p, LocalIndex particle, neighbor::Wall wall) {
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
   const Plane plane = plane_of<F>(data, wall);
   for (int a = F.dimension; a < layout.stride; ++a) {  // places but the position
-    if (a < Block<Real<F>>::places) b.place[a][p] = record[a];
-    if (a >= Block<Real<F>>::places) b.in[a - Block<Real<F>>::places][p] = static_cast<Real<F>>(record[a]);
+    if (a < Block::places) b.place[a][p] = record[a];
+    if (a >= Block::places) b.in[a - Block::places][p] = record[a];
   }
   for (int a = 0; a < F.dimension; ++a) {
     b.place[a][p] = a == plane.axis ? plane.sign : 0.0;
-    b.in[layout.velocity - Block<Real<F>>::places + a][p] = -static_cast<Real<F>>(record[layout.velocity + a]);
+    b.in[layout.velocity - Block::places + a][p] = -record[layout.velocity + a];
   }
-  b.place[Block<Real<F>>::places][p] = plane.offset - plane.sign * record[plane.axis];
+  b.place[Block::places][p] = plane.offset - plane.sign * record[plane.axis];
 }
 
 template <Features F>
-PACKMPI_INLINE void add_walls(const StepData& data, const Constants<Real<F>>& c, double scale, Block<Real<F>>& b,
-                              Tally& tally, std::int64_t from, std::int64_t to) {
+PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block& b, Tally& tally,
+                              std::int64_t from, std::int64_t to) {
   constexpr int accumulators = Memory<F>::accumulators;
   constexpr int forces = Memory<F>::forces;
   constexpr int moments = Memory<F>::moments;

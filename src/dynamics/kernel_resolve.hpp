@@ -25,7 +25,7 @@ PACKMPI_INLINE double shortest(double d, double period, double half) {
 }
 
 template <Features F>
-PACKMPI_INLINE void put(Block<Real<F>>& b, int p, const Force<Real<F>>& f, double scale) {
+PACKMPI_INLINE void put(Block& b, int p, const Force& f, double scale) {
   b.out[0][p] = to_integer(f.force.x * scale);
   b.out[1][p] = to_integer(f.force.y * scale);
   if constexpr (F.dimension == 3) b.out[2][p] = to_integer(f.force.z * scale);
@@ -40,65 +40,50 @@ PACKMPI_INLINE void put(Block<Real<F>>& b, int p, const Force<Real<F>>& f, doubl
 
 /// The contact of entry p, given its normal and overlap.
 template <Features F>
-PACKMPI_INLINE void contact(Block<Real<F>>& b, int p, const Constants<Real<F>>& c, const Reduced<Real<F>>& reduced,
-                            const Vector<Real<F>>& n, Real<F> overlap, double scale) {
+PACKMPI_INLINE void contact(Block& b, int p, const Constants& c, const Reduced& reduced, const Vector& n,
+                            double overlap, double scale) {
   constexpr particles::Layout layout = F.layout();
-  constexpr int v = layout.velocity - Block<Real<F>>::places;
-  constexpr int s = F.rotation ? layout.spin - Block<Real<F>>::places : v;
+  constexpr int v = layout.velocity - Block::places;
+  constexpr int s = F.rotation ? layout.spin - Block::places : v;
   if constexpr (F.dimension == 3) {
     put<F>(b, p,
-           contact_3d<F, Real<F>>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
-                                  {b.in[s][p], b.in[s + 1][p], b.in[s + 2][p]}),
+           contact_3d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
+                         {b.in[s][p], b.in[s + 1][p], b.in[s + 2][p]}),
            scale);
   } else {
-    put<F>(b, p, contact_2d<F, Real<F>>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], Real<F>{0}}, b.in[s][p]),
-           scale);
+    put<F>(b, p, contact_2d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], 0.0}, b.in[s][p]), scale);
   }
 }
 
 /// Curvature of entry p: the sum over the pair, or that of the particle at a wall.
 template <Features F>
-PACKMPI_INLINE Real<F> curvature_at(const Block<Real<F>>& b, int p) {
+PACKMPI_INLINE double curvature_at(const Block& b, int p) {
   constexpr int field = F.layout().curvature;
-  if constexpr (field < Block<Real<F>>::places) {
-    return static_cast<Real<F>>(b.place[field][p]);
+  if constexpr (field < Block::places) {
+    return b.place[field][p];
   } else {
-    return b.in[field - Block<Real<F>>::places][p];
+    return b.in[field - Block::places][p];
   }
 }
 
 /// Where two particles meet.
-template <class R>
 struct Touch {
-  Vector<R> normal;
+  Vector normal;
   double gap;  // the overlap; negative: they do not touch
 };
 
 /// Of two particles at a distance of (x, y, z), whose square is given; their radii add up to `radius`.
-PACKMPI_INLINE Touch<double> touch(double x, double y, double z, double square, double radius) {
-  const double distance = root(square + tiny<double>());
+PACKMPI_INLINE Touch touch(double x, double y, double z, double square, double radius) {
+  const double distance = root(square + tiny);
   const double inverse = 1.0 / distance;
   return {{x * inverse, y * inverse, z * inverse}, radius - distance};
 }
 
-/// Root and quotient are single, and a step of Newton's method makes the distance good to 1e-14: an overlap is a ten
-/// thousandth of it, and would have three digits left.
-PACKMPI_INLINE Touch<float> touch_mixed(double x, double y, double z, double square, double radius) {
-  const float estimate = root(static_cast<float>(square) + tiny<float>());
-  const float inverse = 1.0F / estimate;
-  const double about = estimate;
-  const double distance = about + (square - about * about) * (0.5 * static_cast<double>(inverse));
-  return {{static_cast<float>(x) * inverse, static_cast<float>(y) * inverse, static_cast<float>(z) * inverse},
-          radius - distance};
-}
-
 /// All pairs of the block.
 template <Features F>
-PACKMPI_INLINE void resolve_pairs(Block<Real<F>>& b, const Constants<Real<F>>& c, const Periods& periods,
-                                  double scale) {
-  using R = Real<F>;
+PACKMPI_INLINE void resolve_pairs(Block& b, const Constants& c, const Periods& periods, double scale) {
   constexpr particles::Layout layout = F.layout();
-  const Constants<R> k = c;
+  const Constants k = c;
   const Periods w = periods;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
@@ -112,12 +97,10 @@ PACKMPI_INLINE void resolve_pairs(Block<Real<F>>& b, const Constants<Real<F>>& c
     double square = x * x + y * y;
     if constexpr (F.dimension == 3) square = square + z * z;
     const double radius = b.place[layout.radius][p];
-    Touch<R> at;
-    if constexpr (F.mixed) at = touch_mixed(x, y, z, square, radius);
-    if constexpr (!F.mixed) at = touch(x, y, z, square, radius);
-    const R overlap = static_cast<R>(at.gap < 0.0 ? 0.0 : at.gap);
-    Reduced<R> reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_pair<R>(k.mass_factor, curvature_at<F>(b, p), static_cast<R>(radius));
+    const Touch at = touch(x, y, z, square, radius);
+    const double overlap = at.gap < 0.0 ? 0.0 : at.gap;
+    Reduced reduced = {k.reduced_radius, k.reduced_mass};
+    if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, curvature_at<F>(b, p), radius);
     contact<F>(b, p, k, reduced, at.normal, overlap, scale);
   }
 }
@@ -125,19 +108,17 @@ PACKMPI_INLINE void resolve_pairs(Block<Real<F>>& b, const Constants<Real<F>>& c
 /// All wall contacts of the block; rows 0 .. dimension-1 of `place` hold the normal, towards the wall, the last one the
 /// distance of the centre from the plane, negative beyond it.
 template <Features F>
-PACKMPI_INLINE void resolve_walls(Block<Real<F>>& b, const Constants<Real<F>>& c, double scale) {
-  using R = Real<F>;
+PACKMPI_INLINE void resolve_walls(Block& b, const Constants& c, double scale) {
   constexpr particles::Layout layout = F.layout();
-  const Constants<R> k = c;
+  const Constants k = c;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    const Vector<R> n = {static_cast<R>(b.place[0][p]), static_cast<R>(b.place[1][p]),
-                         F.dimension == 3 ? static_cast<R>(b.place[2][p]) : R{0}};
+    const Vector n = {b.place[0][p], b.place[1][p], F.dimension == 3 ? b.place[2][p] : 0.0};
     const double radius = b.place[layout.radius][p];
-    const double gap = radius - b.place[Block<Real<F>>::places][p];
-    const R overlap = static_cast<R>(gap < 0.0 ? 0.0 : gap);
-    Reduced<R> reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_wall<R>(k.mass_factor, curvature_at<F>(b, p), static_cast<R>(radius));
+    const double gap = radius - b.place[Block::places][p];
+    const double overlap = gap < 0.0 ? 0.0 : gap;
+    Reduced reduced = {k.reduced_radius, k.reduced_mass};
+    if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, curvature_at<F>(b, p), radius);
     contact<F>(b, p, k, reduced, n, overlap, scale);
   }
 }

@@ -280,9 +280,6 @@ void check_theta(const Case& scene) {
                  "friction that jumps with the slip has no derivative for the implicit scheme; use \"stop\" or "
                  "\"viscous\", or dynamics.theta = 0");
   }
-  if (scene.in.dynamics.precision == Precision::mixed) {
-    scene.refuse("dynamics.precision", "Newton's method wants forces in \"double\"; use that, or dynamics.theta = 0");
-  }
 }
 
 void check_checkpoint(const Case& scene) {

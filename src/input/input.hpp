@@ -20,7 +20,6 @@ enum class FrictionVelocity { contact, centre };
 enum class Regularisation { stop, viscous, none };
 enum class WallStiffness { rigid, material };
 enum class StopRule { duration, settled };
-enum class Precision { double_, mixed };
 enum class Decomposition { slab, pencil, metis };
 
 struct Container {
@@ -101,7 +100,6 @@ struct Dynamics {
   StopRule stop = StopRule::duration;
   double settled_energy = 0.0, settled_drift = 0.0, settled_force = 0.0;  ///< [-] limits of "settled"
   double settled_hold = 0.0;                                              ///< [s] for which all must hold
-  Precision precision = Precision::double_;
   int window = 0;              ///< newest layers that move; 0: all
   std::optional<double> thaw;  ///< [s] of the final stage; none: "auto"
 };

@@ -274,8 +274,6 @@ std::vector<Key> dynamics_keys() {
          "... and the mean force on a particle below this times the mean contact force (unbalanced force ratio) ...")),
     when(settled, real("dynamics.settled_hold", at(dynamics, &Dynamics::settled_hold), time, above(0), "0.05",
          "... for so long. All are looked at ten times in this time.")),
-    word("dynamics.precision", at(dynamics, &Dynamics::precision), "double",
-         "Arithmetic of the contact law; mixed: in single precision, with overlaps, positions and sums in double."),
     whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
          "So many of the newest layers move; older ones stand still, as walls to them, until the thaw. 0: all move."),
     real("dynamics.thaw", at(dynamics, &Dynamics::thaw), time, at_least(0), "auto",

@@ -21,7 +21,7 @@ namespace packmpi::input {
 using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
                           Vec3*, std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*,
                           SizeDistribution*, Weighting*, Interpolation*, HeightRule*, FrictionVelocity*,
-                          Regularisation*, WallStiffness*, StopRule*, Precision*, Decomposition*>;
+                          Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {

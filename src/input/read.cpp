@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -58,10 +59,28 @@ std::string name_text(const std::string& name) {
   return bare ? name : toml_string(name);
 }
 
+/// A key that there was once. Written with its only value left it means nothing and is passed over.
+struct Removed {
+  std::string_view path, left, words;
+};
+constexpr std::array removed_keys = {Removed{
+    "dynamics.precision", "double",
+    "mixed precision was removed, since it gained nothing in whole jobs; use \"double\", or leave the key out"}};
+
+/// Was `path` a key that is passed over? Refuses it, by name, with another value than the one left.
+bool is_removed(const Entry& entry, const std::string& path) {
+  const auto* key = std::ranges::find(removed_keys, path, &Removed::path);
+  if (key == removed_keys.end()) return false;
+  const auto* text = std::get_if<std::string>(&entry.node.value);
+  if (text == nullptr || *text != key->left) fail(entry.node.place, path, std::string(key->words));
+  return true;
+}
+
 void refuse_unknown(const Table& table, const std::string& path) {
   const std::vector<std::string> known = names_in(path);
   for (const Entry& entry : table) {
     const std::string here = (path.empty() ? "" : path + ".") + name_text(entry.name);
+    if (is_removed(entry, here)) continue;
     if (std::ranges::find(known, entry.name) == known.end()) {
       fail(entry.node.place, here, "unknown key; " + suggestion(path, entry.name));
     }

@@ -99,7 +99,6 @@ Features features_of(const input::Input& in) {
   f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
   f.drag = in.drag.coefficient > 0.0;
   f.near_field = in.near_field.has_value();
-  f.mixed = in.dynamics.precision == input::Precision::mixed;
   f.graded = in.particles.radius.distribution != input::SizeDistribution::equal;
   f.periodic = std::ranges::any_of(in.container.boundary, [](auto b) { return b == input::Boundary::periodic; });
   return f;

@@ -19,7 +19,6 @@ struct Features {
   bool near_field = false;
   bool graded = false;    ///< radii differ
   bool periodic = false;  ///< any lateral axis
-  bool mixed = false;     ///< the contact law in single precision, positions and sums in double
   /// Classes of size for the neighbour search, each half as large as the one before; 1: radii are alike, one search
   int size_levels = 1;
 

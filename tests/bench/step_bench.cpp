@@ -194,17 +194,9 @@ void run(int count, int runs) {
   cases.back().features.friction = false;
   cases.push_back({"3D equal rotation no drag", full});
   cases.back().features.drag = false;
-  cases.push_back({"3D equal rotation mixed", full});
-  cases.back().features.mixed = true;
-  cases.push_back({"3D graded rotation mixed", full});
-  cases.back().features.graded = true;
-  cases.back().features.mixed = true;
   cases.push_back({"3D equal nothing else", {.dimension = 3, .rotation = false, .friction = false, .drag = false}});
   cases.push_back({"2D equal rotation", full});
   cases.back().features.dimension = 2;
-  cases.push_back({"2D equal rotation mixed", full});
-  cases.back().features.dimension = 2;
-  cases.back().features.mixed = true;
   cases.push_back({"2D equal nothing else", {.dimension = 2, .rotation = false, .friction = false, .drag = false}});
   fmt::print("{}, {} runs each\n", dynamics::kernel_architecture(), runs);
   for (const Case& c : cases) {

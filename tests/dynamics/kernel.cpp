@@ -49,7 +49,7 @@ std::vector<std::string> architectures() {
 
 std::vector<Features> all_features() {
   std::vector<Features> all;
-  for (int bits = 0; bits < 128; ++bits) {
+  for (int bits = 0; bits < 64; ++bits) {
     Features f;
     f.dimension = (bits & 1) != 0 ? 3 : 2;
     f.rotation = (bits & 2) != 0;
@@ -57,7 +57,6 @@ std::vector<Features> all_features() {
     f.drag = (bits & 8) != 0;
     f.graded = (bits & 16) != 0;
     f.periodic = (bits & 32) != 0;
-    f.mixed = (bits & 64) != 0;
     all.push_back(f);
   }
   return all;
@@ -70,7 +69,6 @@ std::string words(const Features& f) {
   if (f.drag) text += " drag";
   if (f.graded) text += " graded";
   if (f.periodic) text += " periodic";
-  if (f.mixed) text += " mixed";
   return text;
 }
 

@@ -84,7 +84,6 @@ stop = "settled"
 settled_energy = 1e-3
 settled_drift = 2e-3
 settled_hold = "0.1 s"
-precision = "mixed"
 window = 3
 thaw = "0.6 s"
 [parallel]
@@ -150,7 +149,6 @@ TEST(GoodInput, EveryForceAndProgramKeyArrives) {
   EXPECT_EQ(in.dynamics.stop, StopRule::settled);
   EXPECT_EQ(in.dynamics.settled_drift, 2e-3);
   EXPECT_EQ(in.dynamics.settled_hold, 0.1);
-  EXPECT_EQ(in.dynamics.precision, Precision::mixed);
   EXPECT_EQ(in.dynamics.window, 3);
   EXPECT_EQ(in.dynamics.thaw, 0.6);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);
@@ -182,7 +180,6 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
   EXPECT_FALSE(in.near_field.has_value());
   EXPECT_TRUE(in.dynamics.rotation);
   EXPECT_FALSE(in.dynamics.time_step.has_value());
-  EXPECT_EQ(in.dynamics.precision, Precision::double_);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::slab);
   EXPECT_FALSE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.01);

@@ -132,18 +132,6 @@ TEST(SameBitsWithAWindow, OfTwoGradedPeriodicLayers) {
   expect_one_pack(window_scene(3, true, true, false, 2), {1, 2, 4});
 }
 
-TEST(SameBitsInMixedPrecision, OfGradedPeriodicLayers) {
-  input::Input in = scene_of(3, true, true, false);
-  in.dynamics.precision = input::Precision::mixed;
-  expect_one_pack(in, {1, 2, 3, 8});
-}
-
-TEST(SameBitsInMixedPrecision, OfEqualDiscsWithAWindow) {
-  input::Input in = window_scene(2, false, false, false, 1);
-  in.dynamics.precision = input::Precision::mixed;
-  expect_one_pack(in, {1, 4});
-}
-
 // Everything that shortens a run at once: soft layers in large steps, ended when they have settled.
 TEST(SameBitsWithAWindow, OfSoftLayersThatSettle) {
   input::Input in = window_scene(3, false, false, false, 1);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,37 +28,15 @@ struct Effect {
   double normal = 0.0;
 };
 
-/// A vector of the law's own numbers: R is double, or float.
-template <class R>
-using Vector = std::array<R, 3>;
+constexpr double tiny = 1e-300;
 
-template <class R>
-Vector<R> narrow(const Vec3& a) {
-  return {static_cast<R>(a[0]), static_cast<R>(a[1]), static_cast<R>(a[2])};
-}
-
-template <class R>
-R narrow(double a) {
-  return static_cast<R>(std::clamp(a, -double{std::numeric_limits<R>::max()}, double{std::numeric_limits<R>::max()}));
-}
-
-template <class R>
-Vec3 widen(const Vector<R>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-template <class R>
-constexpr R tiny = std::is_same_v<R, double> ? R(1e-300) : R(1e-36);
-
-template <class R>
-R dot(const Vector<R>& a, const Vector<R>& b, int dimension) {
-  R sum = a[0] * b[0] + a[1] * b[1];
+double dot(const Vec3& a, const Vec3& b, int dimension) {
+  double sum = a[0] * b[0] + a[1] * b[1];
   if (dimension == 3) sum += a[2] * b[2];
   return sum;
 }
 
-template <class R>
-Vector<R> cross(const Vector<R>& a, const Vector<R>& b) {
+Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -91,65 +67,54 @@ void write(const Features& features, const StepData& data, LocalIndex i, const G
 }
 
 /// What a contact is given: u is the velocity of the second relative to the first, s the sum of their r omega.
-template <class R>
 struct Meeting {
-  R reduced_radius, reduced_mass;
-  Vector<R> n;
-  R overlap;
-  Vector<R> u, s;
+  double reduced_radius, reduced_mass;
+  Vec3 n;
+  double overlap;
+  Vec3 u, s;
 };
 
-template <class R>
-Effect contact(const Features& f, const StepData& data, const LawConstants& c, const Meeting<R>& at) {
+Effect contact(const Features& f, const StepData& data, const LawConstants& c, const Meeting& at) {
   const dynamics::Law& law = data.law;
   const auto& [reduced_radius, reduced_mass, n, overlap, u, s] = at;
-  const R spin_slip = narrow<R>(law.spin_slip);
-  const R slip_rate = narrow<R>(law.slip_mass * law.slip_rate);
-  const R rate = -dot(u, n, f.dimension);
-  const R t = std::sqrt(reduced_radius * overlap);
-  R normal = narrow<R>(c.stiffness) * t * overlap + narrow<R>(c.damping) * std::sqrt(reduced_mass * t) * rate;
-  normal = std::max(normal, narrow<R>(law.lowest_force));
-  Vector<R> friction{}, moment{};
+  const double spin_slip = law.spin_slip;
+  const double slip_rate = law.slip_mass * law.slip_rate;
+  const double rate = -dot(u, n, f.dimension);
+  const double t = std::sqrt(reduced_radius * overlap);
+  double normal = c.stiffness * t * overlap + c.damping * std::sqrt(reduced_mass * t) * rate;
+  normal = std::max(normal, law.lowest_force);
+  Vec3 friction{}, moment{};
   const bool rubs = f.friction || f.rotation;
-  const R sliding = narrow<R>(c.friction) * std::fabs(normal);
+  const double sliding = c.friction * std::fabs(normal);
   if (rubs && f.dimension == 2) {  // along (-n_y, n_x)
-    const R slip = u[1] * n[0] - u[0] * n[1] - (f.rotation ? spin_slip * s[2] : R(0));
-    const R stopping = slip_rate * reduced_mass * std::fabs(slip);
+    const double slip = u[1] * n[0] - u[0] * n[1] - (f.rotation ? spin_slip * s[2] : 0.0);
+    const double stopping = slip_rate * reduced_mass * std::fabs(slip);
     moment[2] = std::copysign(std::min(sliding, stopping), slip);
-    friction = {-(moment[2] * n[1]), moment[2] * n[0], R(0)};
+    friction = {-(moment[2] * n[1]), moment[2] * n[0], 0.0};
   }
   if (rubs && f.dimension == 3) {
-    const Vector<R> turning = cross(s, n);
-    Vector<R> slip;
+    const Vec3 turning = cross(s, n);
+    Vec3 slip;
     for (std::size_t a = 0; a < 3; ++a) {
       slip[a] = u[a] + rate * n[a];
       if (f.rotation) slip[a] -= spin_slip * turning[a];
     }
-    const R stopping = slip_rate * reduced_mass;
-    const R slope = std::min(sliding / std::sqrt(dot(slip, slip, 3) + tiny<R>), stopping);
+    const double stopping = slip_rate * reduced_mass;
+    const double slope = std::min(sliding / std::sqrt(dot(slip, slip, 3) + tiny), stopping);
     for (std::size_t a = 0; a < 3; ++a) friction[a] = slope * slip[a];
     moment = cross(n, friction);
   }
-  Effect e{.force = {}, .moment = widen(moment), .normal = normal};
+  Effect e{.force = {}, .moment = moment, .normal = normal};
   for (std::size_t a = 0; a < 3; ++a) e.force[a] = friction[a] - normal * n[a];
   return e;
 }
 
-/// Normal and distance. In single precision the distance is corrected once in double: the overlap is a small
-/// difference.
-template <class R>
-std::pair<Vector<R>, double> normal_of(const Vec3& x, int dimension) {
-  const double square = dot(x, x, dimension);
-  const R estimate = std::sqrt(narrow<R>(square) + tiny<R>);
-  const R inverse = R(1) / estimate;
-  Vector<R> n{};
-  for (std::size_t a = 0; a < 3; ++a) n[a] = static_cast<R>(x[a]) * inverse;
-  const double about = estimate;
-  const double correction = (square - about * about) * (0.5 * double{inverse});
-  return {n, std::is_same_v<R, double> ? about : about + correction};
+std::pair<Vec3, double> normal_of(const Vec3& x, int dimension) {
+  const double distance = std::sqrt(dot(x, x, dimension) + tiny);
+  const double inverse = 1.0 / distance;
+  return {{x[0] * inverse, x[1] * inverse, x[2] * inverse}, distance};
 }
 
-template <class R>
 Effect pair_effect(const Features& f, const StepData& data, const Grain& i, const Grain& j) {
   Vec3 x{}, u{}, s{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -160,22 +125,21 @@ Effect pair_effect(const Features& f, const StepData& data, const Grain& i, cons
       x[a] = geometry::shortest(x[a], data.size[a]);
     }
   }
-  const auto [n, distance] = normal_of<R>(x, f.dimension);
-  R reduced_radius = narrow<R>(data.law.pair.reduced_radius);
-  R reduced_mass = narrow<R>(data.law.pair.reduced_mass);
+  const auto [n, distance] = normal_of(x, f.dimension);
+  double reduced_radius = data.law.pair.reduced_radius;
+  double reduced_mass = data.law.pair.reduced_mass;
   if (f.graded) {
-    const R k = narrow<R>(j.k + i.k);
-    const R r = narrow<R>(j.r + i.r);
-    const R a = narrow<R>(data.law.mass_factor) * k * k * (k * r - R(3));
-    const R b = R(1) / (a * k);
+    const double k = j.k + i.k;
+    const double r = j.r + i.r;
+    const double a = data.law.mass_factor * k * k * (k * r - 3.0);
+    const double b = 1.0 / (a * k);
     reduced_radius = a * b;
     reduced_mass = r * k * b;
   }
-  const R overlap = narrow<R>(std::max(j.r + i.r - distance, 0.0));
-  return contact<R>(f, data, data.law.pair, {reduced_radius, reduced_mass, n, overlap, narrow<R>(u), narrow<R>(s)});
+  const double overlap = std::max(j.r + i.r - distance, 0.0);
+  return contact(f, data, data.law.pair, {reduced_radius, reduced_mass, n, overlap, u, s});
 }
 
-template <class R>
 Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neighbor::Wall wall) {
   const auto up = static_cast<std::size_t>(f.dimension - 1);
   Vec3 n{};
@@ -197,17 +161,16 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neig
       n[1] = 1.0, distance = data.size[1] - i.x[1];
       break;
   }
-  R reduced_radius = narrow<R>(data.law.wall.reduced_radius);
-  R reduced_mass = narrow<R>(data.law.wall.reduced_mass);
+  double reduced_radius = data.law.wall.reduced_radius;
+  double reduced_mass = data.law.wall.reduced_mass;
   if (f.graded) {
-    const R k = narrow<R>(i.k);
-    reduced_radius = narrow<R>(i.r);
-    reduced_mass = R(1) / (narrow<R>(data.law.mass_factor) * k * k * k);
+    const double k = i.k;
+    reduced_radius = i.r;
+    reduced_mass = 1.0 / (data.law.mass_factor * k * k * k);
   }
   const Vec3 u = {-i.v[0], -i.v[1], -i.v[2]};
-  const R overlap = narrow<R>(std::max(i.r - distance, 0.0));
-  return contact<R>(f, data, data.law.wall,
-                    {reduced_radius, reduced_mass, narrow<R>(n), overlap, narrow<R>(u), narrow<R>(i.s)});
+  const double overlap = std::max(i.r - distance, 0.0);
+  return contact(f, data, data.law.wall, {reduced_radius, reduced_mass, n, overlap, u, i.s});
 }
 
 /// `sign`: 1 for the first end, -1 for the second.
@@ -246,21 +209,20 @@ void add_prefilled(const Features& f, const StepData& data, std::vector<Quanta>&
 }
 
 /// Contacts of pairs and walls, summed. The largest normal force.
-template <class R>
 double add_contacts(const Features& features, const StepData& data, std::vector<Quanta>& sums) {
   double force = 0.0;
   for (std::int64_t p = 0; p < data.pairs; ++p) {
     const auto i = static_cast<std::size_t>(data.first[p]);
     const auto j = static_cast<std::size_t>(data.second[p]);
     const Effect e =
-        pair_effect<R>(features, data, read(features, data, data.first[p]), read(features, data, data.second[p]));
+        pair_effect(features, data, read(features, data, data.first[p]), read(features, data, data.second[p]));
     add(sums[i], e, data.force_quantum, 1);
     if (j < sums.size()) add(sums[j], e, data.force_quantum, -1);
     force = std::max(force, std::fabs(e.normal));
   }
   for (std::int64_t w = 0; w < data.walls; ++w) {
     const LocalIndex i = data.wall_particle[w];
-    const Effect e = wall_effect<R>(features, data, read(features, data, i), data.wall[w]);
+    const Effect e = wall_effect(features, data, read(features, data, i), data.wall[w]);
     add(sums[static_cast<std::size_t>(i)], e, data.force_quantum, 1);
     force = std::max(force, std::fabs(e.normal));
   }
@@ -272,8 +234,7 @@ double add_contacts(const Features& features, const StepData& data, std::vector<
 dynamics::StepReport step(const Features& features, const StepData& data) {
   std::vector<Quanta> sums(static_cast<std::size_t>(data.owned));
   add_prefilled(features, data, sums);
-  const double force =
-      features.mixed ? add_contacts<float>(features, data, sums) : add_contacts<double>(features, data, sums);
+  const double force = add_contacts(features, data, sums);
   Vec3 fastest{};
   for (LocalIndex i = 0; i < data.owned; ++i) {
     Grain g = read(features, data, i);
