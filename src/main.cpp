@@ -1,10 +1,10 @@
-// packmpi: a scene in, a pack out. Everything is in run/.
+// packmpi: a scene in, a pack out. Start reading in run/make_pack.cpp.
 #include <mpi.h>
 
+#include "cli/program.hpp"
 #include "comm/session.hpp"
-#include "run/program.hpp"
 
 int main(int argc, char** argv) {
   const packmpi::comm::Session session(argc, argv);
-  return packmpi::run::program(MPI_COMM_WORLD, argc, argv);
+  return packmpi::cli::program(MPI_COMM_WORLD, argc, argv);
 }

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "disk/text_file.hpp"
 #include "input/read.hpp"
-#include "output/analysis.hpp"
-#include "output/pack.hpp"
-#include "output/report.hpp"
+#include "pack/pack.hpp"
+#include "report/analysis.hpp"
+#include "report/report.hpp"
 #include "run/pile.hpp"
 
 namespace packmpi::run {
@@ -29,7 +30,7 @@ scene::Scene reaching_scene(const std::string& text, const std::string& path, do
 }
 
 // This rank's share of the rows, wherever their columns are.
-void take_share(const output::PackRows& rows, particles::Store& store) {
+void take_share(const pack::PackRows& rows, particles::Store& store) {
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
     store.add(rows.id[k], rows.position[k], rows.radius[k], rows.velocity[k],
               rows.spin.empty() ? Vec3{} : rows.spin[k]);
@@ -39,9 +40,9 @@ void take_share(const output::PackRows& rows, particles::Store& store) {
 }  // namespace
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
-  output::check_pack(comm, path);
-  output::PackSlice slice;
-  comm::agree_on(comm, [&] { slice = output::read_slice(path, comm.rank(), comm.size()); });
+  pack::check_pack(comm, path);
+  pack::PackSlice slice;
+  comm::agree_on(comm, [&] { slice = pack::read_slice(path, comm.rank(), comm.size()); });
   double range = 0.0;
   const scene::Scene scene = reaching_scene(slice.scene, path, range);
   Pile pile(comm, scene);
@@ -50,9 +51,9 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   pile.balance();
   const observe::Analysis analysis = observe::analyse({comm, scene, pile.store, pile.neighborhood, range});
   const std::filesystem::path pack(path);
-  output::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
-                     output::to_json(analysis, scene.box.dimension));
-  return output::to_table(analysis, scene.box.dimension);
+  disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
+                   report::to_json(analysis, scene.box.dimension));
+  return report::to_table(analysis, scene.box.dimension);
 }
 
 }  // namespace packmpi::run

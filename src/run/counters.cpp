@@ -59,12 +59,12 @@ std::vector<Number> costs_of(const Pile& pile) {
 }
 
 // On rank 0; nothing on the others.
-std::vector<output::RankNumbers> gathered(const comm::Comm& comm, const std::vector<Number>& numbers) {
+std::vector<report::RankNumbers> gathered(const comm::Comm& comm, const std::vector<Number>& numbers) {
   std::vector<std::int64_t> mine;
   mine.reserve(numbers.size());
   for (const Number& number : numbers) mine.push_back(number.mine);
   const std::vector<std::int64_t> all = comm.gather(mine);
-  std::vector<output::RankNumbers> result;
+  std::vector<report::RankNumbers> result;
   for (std::size_t k = 0; k < numbers.size() && !all.empty(); ++k) {
     result.push_back({numbers[k].name, numbers[k].unit, {}});
     for (std::size_t at = k; at < all.size(); at += numbers.size()) result.back().of_rank.push_back(all[at]);
@@ -74,7 +74,7 @@ std::vector<output::RankNumbers> gathered(const comm::Comm& comm, const std::vec
 
 }  // namespace
 
-void count(const Pile& pile, std::int64_t touching, output::RunRecord& record) {
+void count(const Pile& pile, std::int64_t touching, report::RunRecord& record) {
   record.counters = gathered(pile.comm, counts_of(pile, touching));
   record.costs = gathered(pile.comm, costs_of(pile));
 }

@@ -2,8 +2,8 @@
 #pragma once
 #include <cstdint>
 
-#include "output/checkpoint.hpp"
-#include "output/record.hpp"
+#include "pack/checkpoint.hpp"
+#include "report/record.hpp"
 
 namespace packmpi::run {
 
@@ -19,8 +19,8 @@ struct Course {
 
 /// What is being done and how far it is. With Pile and RunRecord, all that steers a run.
 struct Stand {
-  output::Phase phase = output::Phase::insertion;
-  output::LayerRow row{};  ///< of the layer that settles
+  pack::Phase phase = pack::Phase::insertion;
+  report::LayerRow row{};  ///< of the layer that settles
   Course course{};
 };
 

@@ -8,9 +8,10 @@
 #include <limits>
 
 #include "base/log.hpp"
+#include "disk/text_file.hpp"
 #include "input/read.hpp"
-#include "output/ensemble.hpp"
-#include "output/report.hpp"
+#include "report/ensemble.hpp"
+#include "report/report.hpp"
 #include "run/make_pack.hpp"
 #include "run/signals.hpp"
 
@@ -57,7 +58,7 @@ int make_member(const comm::Comm& group, const input::Input& in, const Member& m
   options.verbosity = log::Verbosity::quiet;  // many packs at a time
   try {
     const scene::Scene scene = scene::build(member_input(in, member));
-    const output::RunRecord record = make_pack(group, scene, options);
+    const report::RunRecord record = make_pack(group, scene, options);
     if (group.rank() == 0) {
       fmt::print("set {} pack {} (seed {}): {} particles, phi_bulk {:.4f}, {:.3g} s\n", member.set, member.pack,
                  member.seed, record.particles, record.phi_bulk, record.wall_seconds);
@@ -82,22 +83,22 @@ int worst(const std::vector<std::int64_t>& codes) {
 
 void write_tables(const comm::Comm& world, const input::Input& in, const std::vector<Member>& all,
                   const std::vector<std::int64_t>& codes, const Options& options) {
-  output::EnsembleTable table{.name = in.name, .packs = {}};
+  report::EnsembleTable table{.name = in.name, .packs = {}};
   comm::agree_on(world, [&] {
     if (world.rank() != 0) return;
     for (std::size_t k = 0; k < all.size(); ++k) {
       const std::string summary = path_of(options, all[k].name, ".json");
       const bool done = codes[k] == 0 || codes[k] == static_cast<std::int64_t>(ExitCode::target_missed);
       table.packs.push_back(
-          output::ensemble_row(all[k].set, all[k].pack, all[k].seed, static_cast<int>(codes[k]), done ? summary : ""));
+          report::ensemble_row(all[k].set, all[k].pack, all[k].seed, static_cast<int>(codes[k]), done ? summary : ""));
     }
   });
-  for (const auto& [ending, text] : {std::pair{".ensemble.csv", output::to_csv(table)},
-                                     {".ensemble.json", output::to_json(table)},
-                                     {".ensemble.md", output::to_markdown(table)}}) {
-    output::write_text(world, path_of(options, in.name, ending), text);
+  for (const auto& [ending, text] : {std::pair{".ensemble.csv", report::to_csv(table)},
+                                     {".ensemble.json", report::to_json(table)},
+                                     {".ensemble.md", report::to_markdown(table)}}) {
+    disk::write_text(world, path_of(options, in.name, ending), text);
   }
-  if (world.rank() == 0) fmt::print("\n{}", output::to_markdown(table));
+  if (world.rank() == 0) fmt::print("\n{}", report::to_markdown(table));
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 #include <filesystem>
 
 #include "base/log.hpp"
+#include "disk/text_file.hpp"
 #include "geometry/volume.hpp"
-#include "output/pack.hpp"
+#include "pack/pack.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -79,7 +80,7 @@ Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Optio
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(files, options);
   });
-  output::check_writable(comm, options.folder, static_cast<std::int64_t>(bytes_a_particle * expected_particles(scene)));
+  disk::check_writable(comm, options.folder, static_cast<std::int64_t>(bytes_a_particle * expected_particles(scene)));
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) {
       if (options.restart.empty()) remove_if_there(files.log);  // --force: a new log, not a longer one

@@ -22,7 +22,7 @@ double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
 }  // namespace
 
 Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet, bool restarted,
-                 const std::vector<output::LayerRow>& layers)
+                 const std::vector<report::LayerRow>& layers)
     : pile_(pile),
       steps_(pile.comm, steps_path, restarted ? std::optional(pile.steps) : std::nullopt),
       terminal_(stdout_is_terminal()),
@@ -31,7 +31,7 @@ Journal::Journal(const Pile& pile, const std::string& steps_path, bool quiet, bo
       layers_done_(static_cast<int>(layers.size())),
       layers_before_(layers_done_) {}
 
-void Journal::layer_inserted(const output::LayerRow& row) {
+void Journal::layer_inserted(const report::LayerRow& row) {
   log::debug(fmt::format("inserted {} particles in {} darts, solid fraction {:.4f} of the region from {:.6g} m up",
                          row.inserted, row.attempts, row.fraction_got, row.region_bottom));
   log::event_for_programs("layer_inserted", {{"layer", std::int64_t{layers_done_} + 1},
@@ -121,7 +121,7 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   std::fflush(stdout);
 }
 
-void Journal::layer_settled(const output::LayerRow& row) {
+void Journal::layer_settled(const report::LayerRow& row) {
   ++layers_done_;
   height_ = row.height;
   const std::string line = fmt::format(

@@ -7,8 +7,8 @@
 
 #include "base/log.hpp"
 #include "base/timer.hpp"
-#include "output/record.hpp"
-#include "output/report.hpp"
+#include "report/record.hpp"
+#include "report/report.hpp"
 #include "run/pile.hpp"
 
 namespace packmpi::run {
@@ -19,13 +19,13 @@ class Journal {
   /// Collective. Opens the step log at `steps_path`; after a restart, which has settled `layers` before, it goes on
   /// from the step the pile is at.
   Journal(const Pile& pile, const std::string& steps_path, bool quiet, bool restarted,
-          const std::vector<output::LayerRow>& layers);
+          const std::vector<report::LayerRow>& layers);
 
-  void layer_inserted(const output::LayerRow& row);  ///< local
+  void layer_inserted(const report::LayerRow& row);  ///< local
   /// Collective. A row of the step log, and progress; `share` is the part of the layer's (or the final stage's)
   /// duration done, 0 .. 1.
   void moment(double share);
-  void layer_settled(const output::LayerRow& row);  ///< local
+  void layer_settled(const report::LayerRow& row);  ///< local
   void thaw_started();                              ///< local; what follows is the final stage
   void thawed(double height);                       ///< local; height [m] after the final stage
   /// Collective. Closes the files.
@@ -37,7 +37,7 @@ class Journal {
   void tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const;
 
   const Pile& pile_;
-  output::StepLog steps_;
+  report::StepLog steps_;
   Stopwatch watch_;
   bool terminal_ = false;
   bool quiet_ = false;

@@ -11,9 +11,10 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "output/checkpoint.hpp"
-#include "output/report.hpp"
+#include "disk/text_file.hpp"
+#include "pack/checkpoint.hpp"
 #include "packmpi/version.hpp"
+#include "report/report.hpp"
 #include "run/signals.hpp"
 
 namespace packmpi::run {
@@ -33,14 +34,14 @@ double slurm_seconds() {
   return at > 0.0 ? at - static_cast<double>(std::time(nullptr)) - slurm_reserve : never;
 }
 
-const char* phase_name(output::Phase phase) {
+const char* phase_name(pack::Phase phase) {
   constexpr std::array<const char*, 3> names{"insertion", "settling", "thaw"};
   return names.at(static_cast<std::size_t>(phase));
 }
 
 }  // namespace
 
-Keeper::Keeper(Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files,
+Keeper::Keeper(Pile& pile, const Stand& stand, const report::RunRecord& record, const Files& files,
                const Options& options, const Origin& origin)
     : pile_(pile),
       stand_(stand),
@@ -124,34 +125,34 @@ bool Keeper::stop_file_there() {
 
 void Keeper::write() {
   const Stopwatch watch;
-  const output::RunState state{.serial = serial_,
-                               .effective_input = pile_.scene.in.effective,
-                               .version = std::string(version()),
-                               .git = std::string(git_id()),
-                               .dimension = pile_.scene.box.dimension,
-                               .rotation = pile_.scene.features.rotation,
-                               .first_ids = pile_.first_ids,
-                               .count = pile_.count,
-                               .energy_given = pile_.energy_given,
-                               .steps = pile_.steps,
-                               .particle_steps = pile_.particle_steps(),
-                               .layers = record_.layers,
-                               .creep = record_.creep,
-                               .moving_from = pile_.moving_from,
-                               .height = record_.height,
-                               .thaws = record_.thaws,
-                               .thaw_steps = pile_.thaw_steps,
-                               .height_before_thaw = record_.height_before_thaw,
-                               .phase = stand_.phase,
-                               .row = stand_.row,
-                               .done = stand_.course.done,
-                               .phi_before = stand_.course.phi_before,
-                               .mean_height = stand_.course.mean_height,
-                               .calm_since = stand_.course.calm_since,
-                               .phi_calm = stand_.course.phi_calm};
+  const pack::RunState state{.serial = serial_,
+                             .effective_input = pile_.scene.in.effective,
+                             .version = std::string(version()),
+                             .git = std::string(git_id()),
+                             .dimension = pile_.scene.box.dimension,
+                             .rotation = pile_.scene.features.rotation,
+                             .first_ids = pile_.first_ids,
+                             .count = pile_.count,
+                             .energy_given = pile_.energy_given,
+                             .steps = pile_.steps,
+                             .particle_steps = pile_.particle_steps(),
+                             .layers = record_.layers,
+                             .creep = record_.creep,
+                             .moving_from = pile_.moving_from,
+                             .height = record_.height,
+                             .thaws = record_.thaws,
+                             .thaw_steps = pile_.thaw_steps,
+                             .height_before_thaw = record_.height_before_thaw,
+                             .phase = stand_.phase,
+                             .row = stand_.row,
+                             .done = stand_.course.done,
+                             .phi_before = stand_.course.phi_before,
+                             .mean_height = stand_.course.mean_height,
+                             .calm_since = stand_.course.calm_since,
+                             .phi_calm = stand_.course.phi_calm};
   const std::array<const particles::Store*, 2> stores{&pile_.store, &pile_.neighborhood.frozen()};
-  output::write_checkpoint(pile_.comm, files_.slots[slot_], stores, state);
-  output::write_text(
+  pack::write_checkpoint(pile_.comm, files_.slots[slot_], stores, state);
+  disk::write_text(
       pile_.comm, files_.manifest,
       fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 1, \"newest\": \"{}\", "
                   "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",

@@ -19,7 +19,7 @@ namespace packmpi::run {
 /// it is given must outlive it.
 class Keeper {
  public:
-  Keeper(Pile& pile, const Stand& stand, const output::RunRecord& record, const Files& files, const Options& options,
+  Keeper(Pile& pile, const Stand& stand, const report::RunRecord& record, const Files& files, const Options& options,
          const Origin& origin);
 
   /// Steps to make until the next look(); the same on all ranks, at least 1.
@@ -55,7 +55,7 @@ class Keeper {
 
   Pile& pile_;
   const Stand& stand_;
-  const output::RunRecord& record_;
+  const report::RunRecord& record_;
   const Files& files_;
   input::Rhythm rhythm_;
   double limit_ = 0.0;      // [s] since the start; rank 0; infinite: none

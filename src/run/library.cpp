@@ -21,7 +21,7 @@ run::Options options_of(const std::string& scene_file, const PackOptions& option
 PackResult make(const comm::Comm& comm, const run::Options& options) {
   const input::Input in = input::read(comm, options.scene, options.overrides);
   comm::petsc_options(in.petsc.options);
-  const output::RunRecord record = run::make_pack(comm, scene::build(in), options);
+  const report::RunRecord record = run::make_pack(comm, scene::build(in), options);
   PackResult result;
   result.code = static_cast<int>(run::targets_met(record) ? ExitCode::done : ExitCode::target_missed);
   result.file = (std::filesystem::path(options.folder) / (in.name + ".hdf")).string();

@@ -7,10 +7,11 @@
 #include <filesystem>
 
 #include "base/log.hpp"
+#include "disk/text_file.hpp"
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
-#include "output/pack.hpp"
-#include "output/report.hpp"
+#include "pack/pack.hpp"
+#include "report/report.hpp"
 #include "rsa/insert.hpp"
 #include "run/analyze.hpp"
 #include "run/counters.hpp"
@@ -28,7 +29,7 @@
 namespace packmpi::run {
 namespace {
 
-void insert_layer(Pile& pile, Keeper& keeper, output::LayerRow& row) {
+void insert_layer(Pile& pile, Keeper& keeper, report::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
   pile.store.set_ghosts(0);
   const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
@@ -51,7 +52,7 @@ void insert_layer(Pile& pile, Keeper& keeper, output::LayerRow& row) {
   row.region_bottom = region.bottom;
 }
 
-void settle_layer(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
+void settle_layer(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
   const Settled settled = settle(pile, journal, keeper, Part::layer, stand.course);
   record.creep = settled.creep;
   stand.row.steps = settled.steps;
@@ -59,7 +60,7 @@ void settle_layer(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, ou
   stand.row.stop_reason = settled.early ? "settled" : "duration";
 }
 
-void measure_layer(const Pile& pile, output::LayerRow& row) {
+void measure_layer(const Pile& pile, report::LayerRow& row) {
   const scene::Scene& scene = pile.scene;
   const observe::Contacts contacts = observe::contacts(pile.comm, pile.store, scene, pile.neighborhood.pairs(),
                                                        pile.neighborhood.walls(), pile.moving_from);
@@ -73,7 +74,7 @@ void measure_layer(const Pile& pile, output::LayerRow& row) {
 }
 
 // The final stage: every particle moves for scene.thaw. The height is that after it.
-void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
+void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
   if (!(pile.scene.thaw > 0.0) && pile.moving_from == 0) return;
   pile.thaw();
   pile.balance();
@@ -87,13 +88,13 @@ void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::Ru
   journal.thawed(record.height);
 }
 
-void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
-  if (stand.phase == output::Phase::insertion) {
+void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+  if (stand.phase == pack::Phase::insertion) {
     insert_layer(pile, keeper, stand.row);
     pile.freeze_older();
     pile.balance();
     journal.layer_inserted(stand.row);
-    stand.phase = output::Phase::settling;
+    stand.phase = pack::Phase::settling;
   }
   settle_layer(pile, journal, keeper, stand, record);
   measure_layer(pile, stand.row);
@@ -111,7 +112,7 @@ double sinks_by(const input::Input& in) {
 
 // The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
 // too few costs a second final stage, in which all that lies there creeps again.
-double final_height(const scene::Scene& scene, const output::RunRecord& record) {
+double final_height(const scene::Scene& scene, const report::RunRecord& record) {
   if (!(scene.thaw > 0.0) || record.layers.empty()) return record.height;
   const bool over = record.thaws > 0 && record.height_before_thaw == record.layers.back().height;
   if (over) return record.height;
@@ -120,19 +121,19 @@ double final_height(const scene::Scene& scene, const output::RunRecord& record) 
 
 // The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.
 // Bounded.
-void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output::RunRecord& record) {
+void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
   const std::int64_t most = scene::most_layers(pile.scene.in);
   const auto more = [&] {
     return final_height(pile.scene, record) < record.height_asked &&
            static_cast<std::int64_t>(record.layers.size()) < most;
   };
-  while (stand.phase != output::Phase::insertion || more()) {
-    if (stand.phase == output::Phase::thaw) {
+  while (stand.phase != pack::Phase::insertion || more()) {
+    if (stand.phase == pack::Phase::thaw) {
       thaw(pile, journal, keeper, stand, record);
       stand = {};
     } else {
       insert_and_settle(pile, journal, keeper, stand, record);
-      stand = {.phase = more() ? output::Phase::insertion : output::Phase::thaw};
+      stand = {.phase = more() ? pack::Phase::insertion : pack::Phase::thaw};
     }
     keeper.layer_ended();
   }
@@ -140,23 +141,23 @@ void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, output:
   record.stop_reason = record.reached ? "height" : "layers.maximum";
 }
 
-void write_outputs(const Pile& pile, const Files& files, output::RunRecord& record) {
+void write_outputs(const Pile& pile, const Files& files, report::RunRecord& record) {
   const observe::Contacts contacts =
       observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
-  std::vector<output::ContactRow> rows;
+  std::vector<pack::ContactRow> rows;
   if (pile.scene.in.output.contacts) {
     for (const observe::ContactForce& c : observe::contact_forces(pile.store, pile.scene, pile.neighborhood.pairs())) {
       rows.push_back({c.first, c.second, c.overlap, c.force});
     }
   }
   const std::vector<std::int32_t> layers = pile.layers();
-  const output::PackParts parts{.store = &pile.store,
-                                .layer = layers,
-                                .contacts = contacts.of_particle,
-                                .contact_rows = pile.scene.in.output.contacts ? &rows : nullptr};
-  output::write_pack(pile.comm, files.pack, parts, record);
+  const pack::PackParts parts{.store = &pile.store,
+                              .layer = layers,
+                              .contacts = contacts.of_particle,
+                              .contact_rows = pile.scene.in.output.contacts ? &rows : nullptr};
+  pack::write_pack(pile.comm, files.pack, parts, record);
   count(pile, contacts.pairs_here, record);
-  output::write_text(pile.comm, files.summary, output::to_json(record));
+  disk::write_text(pile.comm, files.summary, report::to_json(record));
 }
 
 // How near the sizes are to those asked; one line of the log.
@@ -176,12 +177,12 @@ void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
 }
 
 // The pack in its file; the particles are let go.
-output::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files) {
+report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files) {
   const Stopwatch watch;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   Pile pile(comm, scene);
-  output::RunRecord record = asked(comm, scene);
+  report::RunRecord record = asked(comm, scene);
   Stand stand;
   const Origin origin = resume(files, options, pile, stand, record);
   Keeper keeper(pile, stand, record, files, options, origin);
@@ -200,16 +201,16 @@ output::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
 
 }  // namespace
 
-output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
   const Files files = claim_files(comm, scene, options);
-  output::RunRecord record = make(comm, scene, options, files);
+  report::RunRecord record = make(comm, scene, options, files);
   if (scene.in.output.analysis) (void)analyze(comm, files.pack);
   return record;
 }
 
-bool targets_met(const output::RunRecord& record) {
+bool targets_met(const report::RunRecord& record) {
   constexpr double deepest = 0.5;  // of a radius: no sound pack has such overlaps
-  const output::Audit& audit = record.audit;
+  const report::Audit& audit = record.audit;
   return record.reached && audit.found == audit.expected && audit.non_finite == 0 && audit.outside == 0 &&
          audit.worst_overlap < deepest && audit.worst_wall_penetration < deepest;
 }

@@ -1,7 +1,7 @@
 /// CC16 Algorithm 1: layer after layer until the asked height is reached.
 #pragma once
 #include "comm/comm.hpp"
-#include "output/record.hpp"
+#include "report/record.hpp"
 #include "run/options.hpp"
 #include "scene/scene.hpp"
 
@@ -12,9 +12,9 @@ namespace packmpi::run {
 /// without --force; RSA cannot reach phi_0), numerical_failure, io_failure; bad_checkpoint (options.restart);
 /// stopped_early, with a checkpoint written (signals, limits, a STOP file). Checkpoints are removed once the pack is
 /// written. A pack that misses a target is written all the same: see RunRecord::reached and the audit.
-[[nodiscard]] output::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
+[[nodiscard]] report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
 
 /// Whether the record is what was asked: height reached, nothing lost, nothing outside, no deep overlap.
-[[nodiscard]] bool targets_met(const output::RunRecord& record);
+[[nodiscard]] bool targets_met(const report::RunRecord& record);
 
 }  // namespace packmpi::run

@@ -30,7 +30,7 @@ double asked_sd(const scene::Scene& scene) {
   return std::sqrt(std::max(0.0, scene.sizes.curve().moment(2) - mean * mean));
 }
 
-void audit(const Pile& pile, const observe::Contacts& contacts, output::RunRecord& record) {
+void audit(const Pile& pile, const observe::Contacts& contacts, report::RunRecord& record) {
   const observe::Soundness sound = observe::soundness(pile.comm, pile.store, pile.scene);
   record.audit.expected = pile.count;
   record.audit.found = sound.found;
@@ -42,8 +42,8 @@ void audit(const Pile& pile, const observe::Contacts& contacts, output::RunRecor
 
 }  // namespace
 
-output::RunRecord asked(const comm::Comm& comm, const scene::Scene& scene) {
-  output::RunRecord record;
+report::RunRecord asked(const comm::Comm& comm, const scene::Scene& scene) {
+  report::RunRecord record;
   record.name = scene.in.name;
   record.scene_file = scene.in.file;
   record.effective_input = scene.in.effective;
@@ -66,7 +66,7 @@ output::RunRecord asked(const comm::Comm& comm, const scene::Scene& scene) {
   return record;
 }
 
-void got(const Pile& pile, output::RunRecord& record) {
+void got(const Pile& pile, report::RunRecord& record) {
   const comm::Comm& comm = pile.comm;
   const scene::Scene& scene = pile.scene;
   const observe::Contacts contacts =

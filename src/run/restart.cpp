@@ -14,7 +14,7 @@ namespace packmpi::run {
 namespace {
 
 /// Throws on a scene that is not the checkpoint's. Local.
-void check_scene(const output::RunState& state, const scene::Scene& scene, const std::string& path) {
+void check_scene(const pack::RunState& state, const scene::Scene& scene, const std::string& path) {
   const std::string changes = forbidden_changes(state.effective_input, scene.in.effective);
   if (changes.empty()) return;
   throw Error(ExitCode::bad_checkpoint,
@@ -30,7 +30,7 @@ std::string readable_slots(const Files& files, const scene::Scene& scene, std::s
     if (!std::filesystem::exists(files.slots[k])) continue;
     any = true;
     try {
-      found.emplace_back(output::read_state(files.slots[k]).serial, k);
+      found.emplace_back(pack::read_state(files.slots[k]).serial, k);
     } catch (const Error& error) {
       passed_over += fmt::format("{}{}", passed_over.empty() ? "" : "; ", error.what());
     }
@@ -38,7 +38,7 @@ std::string readable_slots(const Files& files, const scene::Scene& scene, std::s
   std::ranges::sort(found, std::greater{});
   if (!found.empty()) {  // not passed over if it is of another scene: that is for the user to decide
     const std::string& newest = files.slots[found.front().second];
-    check_scene(output::read_state(newest), scene, newest);
+    check_scene(pack::read_state(newest), scene, newest);
   }
   std::string order;
   for (const auto& [serial, slot] : found) order += static_cast<char>('0' + slot);
@@ -50,7 +50,7 @@ std::vector<std::string> choices(const comm::Comm& comm, const Files& files, con
                                  const scene::Scene& scene, std::string& passed_over) {
   if (options.restart != "auto") {
     comm::agree_on(comm, [&] {
-      if (comm.rank() == 0) check_scene(output::read_state(options.restart), scene, options.restart);
+      if (comm.rank() == 0) check_scene(pack::read_state(options.restart), scene, options.restart);
     });
     return {options.restart};
   }
@@ -72,11 +72,11 @@ std::vector<std::string> choices(const comm::Comm& comm, const Files& files, con
 }
 
 /// The first of `paths` that is sound to the last particle.
-std::pair<output::RunState, std::string> read_first(const std::vector<std::string>& paths, std::string passed_over,
-                                                    Pile& pile) {
+std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>& paths, std::string passed_over,
+                                                  Pile& pile) {
   for (const std::string& path : paths) {
     try {
-      output::RunState state = output::read_checkpoint(pile.comm, path, pile.store);
+      pack::RunState state = pack::read_checkpoint(pile.comm, path, pile.store);
       if (!passed_over.empty()) log::warn("passed over: " + passed_over);
       return {std::move(state), path};
     } catch (const Error& error) {  // on all ranks alike
@@ -87,7 +87,7 @@ std::pair<output::RunState, std::string> read_first(const std::vector<std::strin
   throw Error(ExitCode::bad_checkpoint, passed_over);
 }
 
-void put_back(const output::RunState& state, Pile& pile, Stand& stand, output::RunRecord& record) {
+void put_back(const pack::RunState& state, Pile& pile, Stand& stand, report::RunRecord& record) {
   pile.first_ids = state.first_ids;
   pile.count = state.count;
   pile.energy_given = state.energy_given;
@@ -121,7 +121,7 @@ bool same_file(const std::string& a, const std::string& b) {
 std::int64_t next_serial(const Files& files, std::int64_t serial) {
   for (const std::string& slot : files.slots) {
     try {
-      if (std::filesystem::exists(slot)) serial = std::max(serial, output::read_state(slot).serial);
+      if (std::filesystem::exists(slot)) serial = std::max(serial, pack::read_state(slot).serial);
     } catch (const Error&) {
       continue;  // damaged: it will be written over
     }
@@ -131,7 +131,7 @@ std::int64_t next_serial(const Files& files, std::int64_t serial) {
 
 }  // namespace
 
-Origin resume(const Files& files, const Options& options, Pile& pile, Stand& stand, output::RunRecord& record) {
+Origin resume(const Files& files, const Options& options, Pile& pile, Stand& stand, report::RunRecord& record) {
   std::string passed_over;
   if (options.restart.empty()) return {};
   const std::vector<std::string> paths = choices(pile.comm, files, options, pile.scene, passed_over);

@@ -21,6 +21,6 @@ struct Origin {
 /// the newest sound slot, saying which others are passed over and why; from the beginning if there is none at all.
 /// Throws Error(bad_checkpoint) on all ranks: nothing sound, or the scene is another one (with the keys that differ).
 [[nodiscard]] Origin resume(const Files& files, const Options& options, Pile& pile, Stand& stand,
-                            output::RunRecord& record);
+                            report::RunRecord& record);
 
 }  // namespace packmpi::run

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "comm/session.hpp"
-#include "output/checkpoint.hpp"
+#include "pack/checkpoint.hpp"
 
 namespace {
 
@@ -51,18 +51,18 @@ int main(int argc, char** argv) {
 
   const particles::Store store = some_particles(comm, count);
   const std::array<const particles::Store*, 1> stores{&store};
-  output::RunState state;
+  pack::RunState state;
   state.count = count;
   state.effective_input = "seed = 1\n";
   std::vector<double> writing, reading;
   for (int k = 0; k < repeats; ++k) {
     comm.barrier();
     double start = MPI_Wtime();
-    output::write_checkpoint(comm, path, stores, state);
+    pack::write_checkpoint(comm, path, stores, state);
     writing.push_back(comm.max(MPI_Wtime() - start));
     start = MPI_Wtime();
     particles::Store back(store.layout());
-    (void)output::read_checkpoint(comm, path, back);
+    (void)pack::read_checkpoint(comm, path, back);
     reading.push_back(comm.max(MPI_Wtime() - start));
   }
   if (comm.rank() != 0) return 0;

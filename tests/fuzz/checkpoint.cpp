@@ -1,7 +1,7 @@
 /// The readers of checkpoints and packs with damaged files: refused with an error, or read as they were written. The
 /// bytes are a list of changes to a sound file, which is made when the fuzzer starts: see Damage. Or the change is to
 /// what a checkpoint says and all its digests are made to agree, as no damage would: see Forgery.
-#include "output/checkpoint.hpp"
+#include "pack/checkpoint.hpp"
 
 #include <mpi.h>
 
@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "fuzz/demand.hpp"
-#include "output/pack.hpp"
-#include "output/run_state.hpp"
-#include "output/seal.hpp"
+#include "pack/pack.hpp"
+#include "pack/run_state.hpp"
+#include "disk/seal.hpp"
 
 namespace packmpi::fuzz {
 namespace {
@@ -42,7 +42,7 @@ particles::Store some_particles(int dimension, bool rotation) {
   return store;
 }
 
-output::LayerRow some_layer() {
+report::LayerRow some_layer() {
   return {.inserted = particle_count,
           .total = particle_count,
           .attempts = 20,
@@ -69,7 +69,7 @@ void append(std::string& bytes, const std::vector<T>& values) {
   bytes += '|';
 }
 
-std::string bytes_of(const output::PackRows& rows) {
+std::string bytes_of(const pack::PackRows& rows) {
   std::string bytes = std::to_string(rows.dimension);
   append(bytes, rows.id);
   append(bytes, rows.position);
@@ -88,8 +88,8 @@ struct Sample {
   bool rotation = true;
   std::string bytes;     ///< of the file
   std::string contents;  ///< as read_contents() gives them
-  output::Seal seal;
-  output::RunState state;  ///< of a checkpoint
+  disk::Seal seal;
+  pack::RunState state;  ///< of a checkpoint
 };
 
 /// The one file, in a folder of its own below TMPDIR, which had better be in memory. A crash leaves it behind.
@@ -117,16 +117,16 @@ class File {
 /// Everything that the program reads of the file. Throws Error.
 std::string read_contents(const comm::Comm& alone, const Sample& sample, const std::string& path) {
   if (sample.pack) {
-    (void)output::is_pack(path);
-    output::check_pack(alone, path);
-    const output::PackSlice first = output::read_slice(path, 0, 2);
-    return bytes_of(output::read_pack(path)) + bytes_of(first.rows) + first.scene;
+    (void)pack::is_pack(path);
+    pack::check_pack(alone, path);
+    const pack::PackSlice first = pack::read_slice(path, 0, 2);
+    return bytes_of(pack::read_pack(path)) + bytes_of(first.rows) + first.scene;
   }
-  const output::RunState alike = output::read_state(path);
+  const pack::RunState alike = pack::read_state(path);
   particles::Store store(particles::layout_of(sample.dimension, sample.rotation));
-  const output::RunState state = output::read_checkpoint(alone, path, store);
-  demand(output::to_text(state) == output::to_text(alike), "two readers find two states");
-  return output::to_text(state) + state.effective_input + bytes_of(store);
+  const pack::RunState state = pack::read_checkpoint(alone, path, store);
+  demand(pack::to_text(state) == pack::to_text(alike), "two readers find two states");
+  return pack::to_text(state) + state.effective_input + bytes_of(store);
 }
 
 void write_sample(const comm::Comm& alone, const Sample& sample, const std::string& path) {
@@ -134,15 +134,15 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   const std::string scene = "seed = 7\n[container]\nsize = [1.0, 1.0]\n";
   if (sample.pack) {
     const std::vector<std::int32_t> numbers(particle_count, 1);
-    const std::vector<output::ContactRow> contacts{{0, 1, 0.001, {1.0, 2.0, 3.0}}};
-    output::RunRecord record;
+    const std::vector<pack::ContactRow> contacts{{0, 1, 0.001, {1.0, 2.0, 3.0}}};
+    report::RunRecord record;
     record.effective_input = scene;
     record.dimension = sample.dimension;
     record.layers = {some_layer()};
-    output::write_pack(alone, path, {&store, numbers, numbers, sample.rotation ? &contacts : nullptr}, record);
+    pack::write_pack(alone, path, {&store, numbers, numbers, sample.rotation ? &contacts : nullptr}, record);
     return;
   }
-  output::RunState state;
+  pack::RunState state;
   state.serial = 3;
   state.effective_input = scene;
   state.version = "0.1.0";
@@ -152,10 +152,10 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   state.count = particle_count;
   state.steps = 12;
   state.layers = {some_layer()};
-  state.phase = output::Phase::settling;
+  state.phase = pack::Phase::settling;
   state.row = some_layer();
   const std::array<const particles::Store*, 1> stores{&store};
-  output::write_checkpoint(alone, path, stores, state);
+  pack::write_checkpoint(alone, path, stores, state);
 }
 
 class World {
@@ -173,8 +173,8 @@ class World {
         write_sample(alone_, sample, path_);
         sample.bytes = bytes_of(path_);
         sample.contents = read_contents(alone_, sample, path_);
-        sample.seal = output::check_frame(path_);
-        if (!pack) sample.state = output::read_state(path_);
+        sample.seal = disk::check_frame(path_);
+        if (!pack) sample.state = pack::read_state(path_);
         samples_.push_back(sample);
       }
     }
@@ -287,7 +287,7 @@ void replace(std::string& bytes, const std::string& what, const std::string& wit
 /// A checkpoint of another state of the same length, with the digests that belong to it.
 class Forgery {
  public:
-  Forgery(Source& source, const Sample& sample) : sample_(&sample), text_(output::to_text(sample.state)) {
+  Forgery(Source& source, const Sample& sample) : sample_(&sample), text_(pack::to_text(sample.state)) {
     const std::string before = text_;
     Damage damage(source, sample);
     while (!source.empty()) damage.apply(text_);
@@ -295,17 +295,17 @@ class Forgery {
     bytes_ = sample.bytes.substr(0, static_cast<std::size_t>(sample.seal.end));
     const std::string& scene = sample.state.effective_input;
     replace(bytes_, before, text_);
-    replace(bytes_, raw(output::hash_of(before + scene)), raw(output::hash_of(text_ + scene)));
-    output::Seal seal = sample.seal;
-    seal.frame = output::frame_digest(seal, [this](std::int64_t begin, std::int64_t size) {
+    replace(bytes_, raw(pack::hash_of(before + scene)), raw(pack::hash_of(text_ + scene)));
+    disk::Seal seal = sample.seal;
+    seal.frame = disk::frame_digest(seal, [this](std::int64_t begin, std::int64_t size) {
       return bytes_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(size));
     });
-    bytes_ += output::to_bytes(seal);
+    bytes_ += disk::to_bytes(seal);
   }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
   /// What its reader finds unless it refuses: the words of the state as they stand there.
   [[nodiscard]] std::string contents() const {
-    return text_ + sample_->contents.substr(output::to_text(sample_->state).size());
+    return text_ + sample_->contents.substr(pack::to_text(sample_->state).size());
   }
 
  private:

@@ -37,10 +37,10 @@ input::Input scene_of(input::Decomposition kind) {
 class Counters : public ::testing::Test {
  protected:
   // Collective over the world. The record of rank 0 on the first `ranks`.
-  static output::RunRecord make(int ranks, input::Decomposition kind) {
+  static report::RunRecord make(int ranks, input::Decomposition kind) {
     const comm::Comm world(MPI_COMM_WORLD);
     const comm::Comm part = world.split(world.rank() < ranks ? 0 : 1);
-    output::RunRecord record;
+    report::RunRecord record;
     if (world.rank() < ranks) {
       Options options;
       options.folder = std::filesystem::temp_directory_path() / ("packmpi_counters_" + std::to_string(::getppid()));
@@ -53,23 +53,23 @@ class Counters : public ::testing::Test {
     world.barrier();
     return record;
   }
-  static const output::RunRecord& record_on(int ranks, input::Decomposition kind = input::Decomposition::slab) {
-    static std::map<std::pair<int, input::Decomposition>, output::RunRecord> made;
+  static const report::RunRecord& record_on(int ranks, input::Decomposition kind = input::Decomposition::slab) {
+    static std::map<std::pair<int, input::Decomposition>, report::RunRecord> made;
     const auto found = made.find({ranks, kind});
     return found != made.end() ? found->second : made[{ranks, kind}] = make(ranks, kind);
   }
 };
 
-std::int64_t sum_of(const output::RunRecord& record, const std::string& name) {
-  const output::RankNumbers* found = output::find(record.counters, name);
+std::int64_t sum_of(const report::RunRecord& record, const std::string& name) {
+  const report::RankNumbers* found = report::find(record.counters, name);
   return found != nullptr ? found->sum() : -1;
 }
 
 TEST_F(Counters, DoNotDependOnTheRanksWhereTheyMustNot) {
-  const output::RunRecord& one = record_on(1);
+  const report::RunRecord& one = record_on(1);
   for (const auto& [ranks, kind] : {std::pair{2, input::Decomposition::slab}, std::pair{3, input::Decomposition::slab},
                                     std::pair{4, input::Decomposition::pencil}}) {
-    const output::RunRecord& many = record_on(ranks, kind);
+    const report::RunRecord& many = record_on(ranks, kind);
     if (many.counters.empty()) continue;  // not rank 0
     SCOPED_TRACE(ranks);
     for (const char* name : {"owned", "touching_pairs", "particle_steps", "frozen_steps"}) {
@@ -79,15 +79,15 @@ TEST_F(Counters, DoNotDependOnTheRanksWhereTheyMustNot) {
     EXPECT_EQ(sum_of(many, "particle_steps"), many.particle_steps);
     EXPECT_DOUBLE_EQ(2.0 * static_cast<double>(sum_of(many, "touching_pairs")),
                      many.coordination * static_cast<double>(many.particles));
-    EXPECT_EQ(output::moving_share(many), output::moving_share(one));
-    EXPECT_LT(output::moving_share(many), 1.0);
+    EXPECT_EQ(report::moving_share(many), report::moving_share(one));
+    EXPECT_LT(report::moving_share(many), 1.0);
     EXPECT_GT(sum_of(many, "touching_pairs"), 0);
     for (const char* name : {"ghosts", "ghost_steps", "ghost_messages", "halo_messages", "insertion_messages",
                              "migration_messages", "frozen_messages"}) {
       EXPECT_GT(sum_of(many, name), 0) << name;
     }
     for (const char* name : {"rebuilds", "reductions", "exchanges"}) {  // collective: all ranks alike
-      const output::RankNumbers* numbers = output::find(many.counters, name);
+      const report::RankNumbers* numbers = report::find(many.counters, name);
       const std::vector<std::int64_t> alike(static_cast<std::size_t>(ranks), numbers != nullptr ? numbers->max() : 0);
       EXPECT_TRUE(numbers != nullptr && numbers->of_rank == alike) << name;
     }
@@ -99,10 +99,10 @@ TEST_F(Counters, DoNotDependOnTheRanksWhereTheyMustNot) {
 }
 
 TEST_F(Counters, AloneNothingIsSent) {
-  const output::RunRecord& one = record_on(1);
+  const report::RunRecord& one = record_on(1);
   if (one.counters.empty()) return;  // not rank 0
   ASSERT_GT(one.counters.size(), 12U);
-  for (const output::RankNumbers& numbers : one.counters) {
+  for (const report::RankNumbers& numbers : one.counters) {
     const bool sent = numbers.name.ends_with("_messages") || numbers.name.ends_with("_bytes");
     if (sent || numbers.name.starts_with("ghost")) {
       EXPECT_EQ(numbers.sum(), 0) << numbers.name;
@@ -112,15 +112,15 @@ TEST_F(Counters, AloneNothingIsSent) {
 }
 
 TEST_F(Counters, AreTheSameInEachRun) {
-  const output::RunRecord& first = record_on(3);
-  const output::RunRecord second = make(3, input::Decomposition::slab);
+  const report::RunRecord& first = record_on(3);
+  const report::RunRecord second = make(3, input::Decomposition::slab);
   ASSERT_EQ(first.counters.size(), second.counters.size());
   for (std::size_t k = 0; k < first.counters.size(); ++k) {
     EXPECT_EQ(first.counters[k].of_rank, second.counters[k].of_rank) << first.counters[k].name;
   }
   if (!first.counters.empty()) {
     ASSERT_FALSE(first.costs.empty());
-    const output::RankNumbers* memory = output::find(first.costs, "memory");
+    const report::RankNumbers* memory = report::find(first.costs, "memory");
     ASSERT_NE(memory, nullptr);
     EXPECT_GT(memory->max(), 1 << 20);  // no MPI program is smaller than a megabyte
   }
@@ -128,9 +128,9 @@ TEST_F(Counters, AreTheSameInEachRun) {
 
 // Two ranks are one neighbour each: two messages a step, together position, velocity and spin of each ghost.
 TEST_F(Counters, EachHalfOfTheGhostsIsSentOncePerStepAndNeighbour) {
-  const output::RunRecord& record = record_on(2);
+  const report::RunRecord& record = record_on(2);
   if (record.counters.empty()) return;  // not rank 0
-  EXPECT_EQ(output::find(record.counters, "ghost_messages")->of_rank, std::vector<std::int64_t>(2, 2 * record.steps));
+  EXPECT_EQ(report::find(record.counters, "ghost_messages")->of_rank, std::vector<std::int64_t>(2, 2 * record.steps));
   constexpr std::int64_t bytes = 9 * 8;
   EXPECT_EQ(sum_of(record, "ghost_bytes"), bytes * sum_of(record, "ghost_steps"));
 }

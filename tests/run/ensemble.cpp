@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "input/read.hpp"
-#include "output/ensemble.hpp"
-#include "output/pack.hpp"
+#include "report/ensemble.hpp"
+#include "pack/pack.hpp"
 #include "run/make_pack.hpp"
 
 namespace packmpi::run {
@@ -52,8 +52,8 @@ class Ensembles : public ::testing::Test {
     testing::internal::GetCapturedStdout();
     return code;
   }
-  [[nodiscard]] output::PackRows pack(const std::string& name) const {
-    return output::read_pack((folder_ / (name + ".hdf")).string());
+  [[nodiscard]] pack::PackRows pack(const std::string& name) const {
+    return pack::read_pack((folder_ / (name + ".hdf")).string());
   }
   [[nodiscard]] nlohmann::json table() const {
     std::ifstream file(folder_ / "box.ensemble.json");
@@ -67,7 +67,7 @@ class Ensembles : public ::testing::Test {
       Options o = options();
       o.force = true;
       static_cast<void>(make_pack(comm_, scene::build(alone), o));
-      const output::PackRows a = pack(member.name), b = pack("alone");
+      const pack::PackRows a = pack(member.name), b = pack("alone");
       EXPECT_EQ(a.position, b.position) << member.name;
       EXPECT_EQ(a.velocity, b.velocity) << member.name;
       EXPECT_EQ(a.spin, b.spin) << member.name;

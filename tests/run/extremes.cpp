@@ -14,7 +14,7 @@
 
 #include "input/read.hpp"
 #include "observe/measure.hpp"
-#include "output/pack.hpp"
+#include "pack/pack.hpp"
 #include "rsa/insert.hpp"
 #include "run/make_pack.hpp"
 #include "support/placed_pile.hpp"
@@ -49,24 +49,24 @@ damping_ratio = 0.3
 class Extremes : public ::testing::Test {
  protected:
   comm::Comm comm_{MPI_COMM_WORLD};
-  output::PackRows rows_;  // of the last pack
+  pack::PackRows rows_;  // of the last pack
 
-  output::RunRecord pack(const Set& set) {
+  report::RunRecord pack(const Set& set) {
     Options options;
     options.folder =
         comm_.broadcast(0, (fs::temp_directory_path() / ("packmpi_extremes_" + std::to_string(::getpid()))).string());
     options.force = true;
     options.verbosity = log::Verbosity::quiet;
-    output::RunRecord record = make_pack(comm_, scene::build(input::parse(brick, "brick.toml", {set})), options);
-    rows_ = output::read_pack(options.folder + "/brick.hdf");
+    report::RunRecord record = make_pack(comm_, scene::build(input::parse(brick, "brick.toml", {set})), options);
+    rows_ = pack::read_pack(options.folder + "/brick.hdf");
     comm_.barrier();
     if (comm_.rank() == 0) fs::remove_all(options.folder);
     comm_.barrier();
     return record;
   }
   // The scene ends right: nobody lost, outside or pressed too far.
-  output::RunRecord sound(const Set& set) {
-    output::RunRecord record = pack(set);
+  report::RunRecord sound(const Set& set) {
+    report::RunRecord record = pack(set);
     EXPECT_EQ(record.audit.found, record.audit.expected);
     EXPECT_EQ(record.audit.non_finite + record.audit.outside, 0);
     EXPECT_LT(std::max(record.audit.worst_overlap, record.audit.worst_wall_penetration), 0.5);
@@ -172,7 +172,7 @@ TEST_F(Extremes, RatiosOfRadiiFromTwoToFifty) {
 TEST_F(Extremes, BoxOfAMillionRadii) {
   const Set wide{"container.size=[2e4, 2e4, 0.05]", "layers.fraction=1e-11", "layers.duration=2",
                  "drag.coefficient=0.05"};
-  const auto expect_rest = [&](const output::RunRecord& record) {  // each alone on the floor
+  const auto expect_rest = [&](const report::RunRecord& record) {  // each alone on the floor
     EXPECT_GT(record.particles, 20);
     EXPECT_NEAR(record.floor_force, record.weight, 1e-3 * record.weight);
     EXPECT_NEAR(record.audit.worst_wall_penetration, resting(5.0), 1e-3 * resting(5.0));
@@ -362,7 +362,7 @@ TEST_F(Extremes, MoreRanksThanColumns) {
 // What is smaller than any number that matters counts as nothing, and -0 as 0: to the bit.
 TEST_F(Extremes, DenormalsAndMinusZero) {
   (void)sound({});
-  const output::PackRows plain = rows_;
+  const pack::PackRows plain = rows_;
   (void)sound({"layers.velocity=[-0.0, 4.9e-324, -0.0]", "layers.spin=[-0.0, -0.0, 4.9e-324]",
                "drag.fluid_velocity=[-0.0, -0.0, -0.0]", "drag.coefficient=4.9e-324"});
   for (std::size_t k = 0; k < plain.id.size(); ++k) {

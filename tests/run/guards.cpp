@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "input/read.hpp"
-#include "output/checkpoint.hpp"
+#include "pack/checkpoint.hpp"
 #include "run/make_pack.hpp"
 #include "run/pile.hpp"
 #include "support/scenes.hpp"
@@ -159,7 +159,7 @@ TEST(GuardedRun, LeavesTheLastSoundCheckpointAndIsNotContinuedAsAnotherScene) {
   options.verbosity = log::Verbosity::quiet;
   const auto ends = [&](const std::vector<std::string>& set) {
     try {
-      const output::RunRecord record = make_pack(comm, scene::build(input::parse(soft, "soft.toml", {set})), options);
+      const report::RunRecord record = make_pack(comm, scene::build(input::parse(soft, "soft.toml", {set})), options);
       ADD_FAILURE() << "a pack of " << record.particles;
     } catch (const Error& error) {
       return std::pair{error.code(), std::string(error.what())};
@@ -172,7 +172,7 @@ TEST(GuardedRun, LeavesTheLastSoundCheckpointAndIsNotContinuedAsAnotherScene) {
   ASSERT_EQ(std::sscanf(first.second.c_str(), "layer 1, step %ld,", &failed), 1) << first.second;
   std::int64_t newest = 0;
   for (const char* slot : {"soft.ckpt.A.hdf", "soft.ckpt.B.hdf"}) {
-    newest = std::max(newest, output::read_state((fs::path(options.folder) / slot).string()).steps);
+    newest = std::max(newest, pack::read_state((fs::path(options.folder) / slot).string()).steps);
   }
   EXPECT_GT(newest, 50);
   EXPECT_LT(newest, failed);

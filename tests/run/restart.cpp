@@ -12,8 +12,8 @@
 #include <functional>
 #include <sstream>
 
-#include "output/checkpoint.hpp"
-#include "output/pack.hpp"
+#include "pack/checkpoint.hpp"
+#include "pack/pack.hpp"
 #include "run/make_pack.hpp"
 #include "run/scene_change.hpp"
 #include "run/signals.hpp"
@@ -94,8 +94,8 @@ Counts& counts() {
 
 /// What a run left.
 struct Left {
-  output::PackRows rows;
-  output::RunRecord record;
+  pack::PackRows rows;
+  report::RunRecord record;
   std::string series;  // NAME.steps.csv without the column of rebuilds
 };
 
@@ -145,7 +145,7 @@ class Restart : public ::testing::TestWithParam<Kind> {
 
   [[nodiscard]] Left left() {
     Left now = left_;
-    now.rows = output::read_pack(file("hdf"));
+    now.rows = pack::read_pack(file("hdf"));
     std::ifstream series(file("steps.csv"));
     for (std::string line; std::getline(series, line);) {
       std::istringstream cells(line);
@@ -175,8 +175,8 @@ class Restart : public ::testing::TestWithParam<Kind> {
     EXPECT_EQ(a.rows.contacts, b.rows.contacts);
     EXPECT_EQ(a.series, b.series);
     if (world_.rank() != 0) return;  // the others may not have run
-    const output::RunRecord &x = a.record, &y = b.record;
-    const auto numbers = [](const output::RunRecord& r) {
+    const report::RunRecord &x = a.record, &y = b.record;
+    const auto numbers = [](const report::RunRecord& r) {
       return std::array{r.height,
                         r.top,
                         r.phi,
@@ -338,7 +338,7 @@ TEST_P(RestartRules, StoppedInAnInsertion) {
       ExitCode::stopped_early)
       << words_;
   const std::string newer =
-      file(output::read_state(file("ckpt.A.hdf")).phase == output::Phase::settling ? "ckpt.A.hdf" : "ckpt.B.hdf");
+      file(pack::read_state(file("ckpt.A.hdf")).phase == pack::Phase::settling ? "ckpt.A.hdf" : "ckpt.B.hdf");
   world_.barrier();
   if (world_.rank() == 0) fs::remove(newer);
   world_.barrier();
@@ -356,8 +356,8 @@ TEST_P(RestartRules, SwappedSlots) {
   EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.force = true, o.max_steps = layer_steps + 70; }),
             ExitCode::stopped_early);
   if (world_.rank() == 0) {
-    const std::int64_t a = output::read_state(file("ckpt.A.hdf")).serial;
-    const std::int64_t b = output::read_state(file("ckpt.B.hdf")).serial;
+    const std::int64_t a = pack::read_state(file("ckpt.A.hdf")).serial;
+    const std::int64_t b = pack::read_state(file("ckpt.B.hdf")).serial;
     EXPECT_EQ(std::abs(a - b), 1);
     fs::rename(file("ckpt.A.hdf"), file("ckpt"));
     fs::rename(file("ckpt.B.hdf"), file("ckpt.A.hdf"));

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/timer.hpp"
-#include "output/pack.hpp"
+#include "pack/pack.hpp"
 #include "run/make_pack.hpp"
 #include "support/scenes.hpp"
 
@@ -39,16 +39,16 @@ input::Input scene_of(int dimension, bool graded, bool periodic, bool near_field
   return in;
 }
 
-output::PackRows pack_on(const comm::Comm& comm, const input::Input& in, const std::string& folder) {
+pack::PackRows pack_on(const comm::Comm& comm, const input::Input& in, const std::string& folder) {
   Options options;
   options.folder = folder;
   options.force = true;
   options.verbosity = log::Verbosity::quiet;
   (void)make_pack(comm, scene::build(in), options);
-  return output::read_pack(folder + "/same_bits.hdf");
+  return pack::read_pack(folder + "/same_bits.hdf");
 }
 
-void expect_same(const output::PackRows& a, const output::PackRows& b) {
+void expect_same(const pack::PackRows& a, const pack::PackRows& b) {
   EXPECT_EQ(a.id, b.id);
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.velocity, b.velocity);
@@ -58,7 +58,7 @@ void expect_same(const output::PackRows& a, const output::PackRows& b) {
   EXPECT_EQ(a.contacts, b.contacts);
 }
 
-bool anything_touches(const output::PackRows& rows) {
+bool anything_touches(const pack::PackRows& rows) {
   return std::ranges::any_of(rows.contacts, [](std::int32_t n) { return n > 0; });
 }
 
@@ -81,7 +81,7 @@ void expect_one_pack(input::Input in, std::initializer_list<int> rank_counts) {
   ASSERT_EQ(world.size(), 8);
   const std::string folder =
       std::filesystem::temp_directory_path() / ("packmpi_same_bits_" + std::to_string(::getppid()));
-  std::optional<output::PackRows> reference;
+  std::optional<pack::PackRows> reference;
   for (const int ranks : rank_counts) {
     MPI_Comm part = MPI_COMM_NULL;
     MPI_Comm_split(MPI_COMM_WORLD, world.rank() < ranks ? 0 : 1, world.rank(), &part);
@@ -91,7 +91,7 @@ void expect_one_pack(input::Input in, std::initializer_list<int> rank_counts) {
         if (ranks == 1 && kind != Decomposition::slab) continue;
         SCOPED_TRACE(::testing::Message() << ranks << " ranks, decomposition " << static_cast<int>(kind));
         in.parallel.decomposition = kind;
-        output::PackRows rows;
+        pack::PackRows rows;
         try {
           rows = pack_on(comm, in, folder);
         } catch (const Error& error) {  // on every rank of the group: the others must not wait for ever
@@ -109,7 +109,7 @@ void expect_one_pack(input::Input in, std::initializer_list<int> rank_counts) {
     MPI_Comm_free(&part);
     // Ranks outside the first group learn the reference from the file when they first take part.
     world.barrier();
-    if (!reference) reference = output::read_pack(folder + "/same_bits.hdf");
+    if (!reference) reference = pack::read_pack(folder + "/same_bits.hdf");
     world.barrier();
   }
   if (world.rank() == 0) std::filesystem::remove_all(folder);

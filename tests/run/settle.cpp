@@ -27,20 +27,20 @@ input::Input brick() {
   return in;
 }
 
-output::RunRecord pack(const input::Input& in) {
+report::RunRecord pack(const input::Input& in) {
   const comm::Comm comm(MPI_COMM_WORLD);
   Options options;
   options.folder = std::filesystem::temp_directory_path() / ("packmpi_settle_" + std::to_string(::getppid()));
   options.force = true;
   options.verbosity = log::Verbosity::quiet;
-  const output::RunRecord record = make_pack(comm, scene::build(in), options);
+  const report::RunRecord record = make_pack(comm, scene::build(in), options);
   comm.barrier();
   if (comm.rank() == 0) std::filesystem::remove_all(options.folder);
   comm.barrier();
   return record;
 }
 
-void expect_sound(const output::RunRecord& record) {
+void expect_sound(const report::RunRecord& record) {
   EXPECT_EQ(record.audit.found, record.audit.expected);
   EXPECT_EQ(record.audit.outside, 0);
   EXPECT_EQ(record.audit.non_finite, 0);
@@ -63,10 +63,10 @@ TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
   input::Input in = brick();
   in.dynamics.window = 1;
   in.dynamics.thaw = 0.4;
-  const output::RunRecord record = pack(in);
+  const report::RunRecord record = pack(in);
   expect_sound(record);
   std::int64_t expected = 0;
-  for (const output::LayerRow& row : record.layers) {
+  for (const report::LayerRow& row : record.layers) {
     EXPECT_EQ(row.steps, 4000);
     expected += row.steps * row.inserted;
   }
@@ -77,13 +77,13 @@ TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
 }
 
 // A pile of which three layers stand at H_d before the thaw and below it afterwards: by `missed` of what they sink.
-output::RunRecord pack_that_sinks(double duration, double missed) {
+report::RunRecord pack_that_sinks(double duration, double missed) {
   input::Input in = brick();
   in.layers.duration = duration;  // short: much is left to the thaw
   in.layers.maximum = 3;
   in.dynamics.window = 1;
   in.dynamics.thaw = 0.8;
-  const output::RunRecord three = pack(in);
+  const report::RunRecord three = pack(in);
   EXPECT_LT(three.height, three.height_before_thaw - 1e-3);
   in.container.size.back() = three.height + missed * (three.height_before_thaw - three.height);
   in.layers.maximum = 0;
@@ -91,7 +91,7 @@ output::RunRecord pack_that_sinks(double duration, double missed) {
 }
 
 TEST(Settle, AnotherLayerFollowsAtOnceIfThePileIsGoingToSinkBelowTheHeight) {
-  const output::RunRecord record = pack_that_sinks(0.4, 0.5);
+  const report::RunRecord record = pack_that_sinks(0.4, 0.5);
   EXPECT_EQ(record.layers.size(), 4U);
   EXPECT_GT(record.layers[2].height, record.height_asked);
   EXPECT_EQ(record.thaws, 1);
@@ -102,7 +102,7 @@ TEST(Settle, AnotherLayerFollowsAtOnceIfThePileIsGoingToSinkBelowTheHeight) {
 }
 
 TEST(Settle, MoreLayersFollowIfThePileSinksInTheThawByMoreThanWasForeseen) {
-  const output::RunRecord record = pack_that_sinks(0.1, 0.02);
+  const report::RunRecord record = pack_that_sinks(0.1, 0.02);
   EXPECT_EQ(record.layers.size(), 4U);
   EXPECT_GE(record.thaws, 2);
   EXPECT_EQ(record.thaw_steps, 4000 * record.thaws);
@@ -122,7 +122,7 @@ std::size_t layers_if_above(double share, bool rotation, double friction) {
   const double rise = in.layers.thickness * in.layers.fraction / 0.58;
   in.container.size.back() = pack(in).height_before_thaw - share * rise;
   in.layers.maximum = 0;
-  const output::RunRecord record = pack(in);
+  const report::RunRecord record = pack(in);
   EXPECT_EQ(record.thaws, 1);
   return record.layers.size();
 }
@@ -138,9 +138,9 @@ TEST(Settle, RoughParticlesWithoutSpinAreExpectedToSinkFarther) {
 TEST(Settle, AWindowOfAllLayersIsNoWindow) {
   input::Input in = brick();
   in.dynamics.thaw = 0.1;
-  const output::RunRecord all = pack(in);
+  const report::RunRecord all = pack(in);
   in.dynamics.window = 4;
-  const output::RunRecord window = pack(in);
+  const report::RunRecord window = pack(in);
   EXPECT_EQ(window.particle_steps, all.particle_steps);
   EXPECT_EQ(window.height, all.height);
   EXPECT_EQ(window.phi_bulk, all.phi_bulk);
@@ -156,8 +156,8 @@ TEST(Settle, StopsALayerOnceItIsCalm) {
   in.dynamics.settled_drift = 1e-2;
   in.dynamics.settled_hold = 0.05;
   in.dynamics.settled_force = 1.0;
-  const output::RunRecord record = pack(in);
-  for (const output::LayerRow& row : record.layers) {
+  const report::RunRecord record = pack(in);
+  for (const report::LayerRow& row : record.layers) {
     EXPECT_EQ(row.stop_reason, "settled");
     EXPECT_LT(row.duration, 1.5);
     EXPECT_GT(row.duration, 0.3);  // it takes that long to fall
@@ -168,7 +168,7 @@ TEST(Settle, StopsALayerOnceItIsCalm) {
   for (double input::Dynamics::*limit : {&input::Dynamics::settled_energy, &input::Dynamics::settled_force}) {
     input::Input never = in;
     never.dynamics.*limit = 1e-30;
-    for (const output::LayerRow& row : pack(never).layers) {
+    for (const report::LayerRow& row : pack(never).layers) {
       EXPECT_EQ(row.stop_reason, "duration");
       EXPECT_EQ(row.steps, 2000);
     }
@@ -180,10 +180,10 @@ TEST(Settle, SoftLayersEndAsHardAsTheOthers) {
   in.layers.maximum = 3;
   in.layers.duration = 1.5;  // at rest, or impacts of the last to fall set the largest overlap
   in.dynamics.thaw = 0.6;
-  const output::RunRecord hard = pack(in);
+  const report::RunRecord hard = pack(in);
   in.layers.youngs_modulus = 1e7;
   in.layers.time_step = 5e-4;
-  const output::RunRecord soft = pack(in);
+  const report::RunRecord soft = pack(in);
   expect_sound(soft);
   EXPECT_GT(soft.layers.back().max_overlap, 2.0 * hard.layers.back().max_overlap);  // (E ratio)^(2/3) is 4.6
   EXPECT_NEAR(soft.mean_overlap, hard.mean_overlap, 0.25 * hard.mean_overlap);

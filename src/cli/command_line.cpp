@@ -1,0 +1,297 @@
+// The command line, by CLI11; nothing else of the program sees that library. Commands and options are declared here
+// once: parser, help, manual page and shell completion come from these declarations.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "cli/command_docs.hpp"
+#include "cli/options.hpp"
+#include "cli/scene_schema.hpp"
+#include "input/units.hpp"
+#include "packmpi/version.hpp"
+
+namespace packmpi::cli {
+namespace {
+
+constexpr const char* about =
+    "packmpi: dense random packs of spheres for DEM, layer by layer, on any number of MPI ranks.\n"
+    "\"packmpi SCENE.toml\" is \"packmpi run SCENE.toml\"; \"packmpi COMMAND --help\" tells a command's options.";
+
+std::string version_text() { return fmt::format("packmpi {} ({}, {})\n", version(), git_id(), compiler()); }
+
+void declare_scene(CLI::App& app, Request& request) {
+  app.add_option("SCENE", request.run.scene, "scene file (doc/input.md)")->required();
+  app.add_option("--set", request.run.overrides.set, "change a key; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY.PATH=VALUE");
+  // Declared after --set, so it is added behind its values, and wins.
+  app.add_option_function<std::uint64_t>(
+         "--seed",
+         [&request](std::uint64_t seed) { request.run.overrides.set.push_back(fmt::format("seed={}", seed)); },
+         "the same as --set seed=N")
+      ->type_name("N");
+}
+
+void declare_run(CLI::App& app, Request& request) {
+  declare_scene(app, request);
+  app.add_option("-o,--output", request.run.folder, "folder for the outputs; made if missing")
+      ->capture_default_str()
+      ->type_name("FOLDER");
+  app.add_flag("--force", request.run.force, "replace outputs that exist");
+  app.add_option("--restart", request.run.restart, "go on from a checkpoint: auto (the newest sound one) or its file")
+      ->type_name("auto|FILE");
+  app.add_option("--max-hours", request.run.max_hours, "write a checkpoint and end (code 75) before so much wall time")
+      ->check(CLI::PositiveNumber)
+      ->type_name("H");
+  app.add_option("--max-steps", request.run.max_steps, "the same after so many time steps")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option_function<std::string>(
+         "--log-format",
+         [&request](const std::string& word) {
+           request.run.log_format = word == "jsonl" ? log::Format::jsonl : log::Format::text;
+         },
+         "of NAME.log: text, or jsonl, one JSON object a line with the numbers as members")
+      ->check(CLI::IsMember({"text", "jsonl"}))
+      ->type_name("text|jsonl");
+  app.add_flag_callback(
+      "-q,--quiet", [&request] { request.run.verbosity = log::Verbosity::quiet; },
+      "say only warnings, errors and the result");
+  app.add_flag_callback(
+      "-v,--verbose", [&request] { request.run.verbosity = log::Verbosity::verbose; }, "say more");
+}
+
+void declare_info(CLI::App& app, Request& request) {
+  app.add_option("FILE", request.run.scene, "pack or checkpoint")->required();
+}
+
+void declare_analyze(CLI::App& app, Request& request) {
+  app.add_option("PACK", request.run.scene, "pack (NAME.hdf)")->required();
+}
+
+void declare_init(CLI::App& app, Request& request) {
+  app.add_option("FILE", request.run.scene, "scene file to write")->default_val("scene.toml");
+  app.add_option("--dimension", request.dimension, "2: discs, 3: spheres")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str()
+      ->type_name("2|3");
+  app.add_flag("--force", request.run.force, "replace the file if it exists");
+}
+
+constexpr std::array<std::string_view, 2> trims{"drop", "cut"};  // exporters::Trim after none, in its order
+
+std::string lines(const std::vector<EndWords>& table) {
+  std::string text;
+  for (const EndWords& line : table) text += fmt::format("  {:<28}{}\n", line.term, line.text);
+  return text;
+}
+
+std::vector<EndWords> format_words() {
+  std::vector<EndWords> words;
+  for (const exporters::FormatWords& f : exporters::convert_formats()) {
+    const std::string second = *f.companion == '\0' ? "" : fmt::format(", {}", f.companion);
+    words.push_back({f.name, fmt::format("{} (NAME{}{})", f.text, f.ending, second)});
+  }
+  return words;
+}
+
+// "NX,NY" or "NX".
+void read_copies(const std::string& text, std::array<int, 2>& copies) {
+  std::istringstream words(text);
+  char comma = ',';
+  copies = {0, 1};
+  const bool sound = words >> copies[0] && (words.eof() || (words >> comma && comma == ',' && words >> copies[1])) &&
+                     (words >> std::ws).eof() && copies[0] > 0 && copies[1] > 0;
+  if (!sound) throw CLI::ValidationError("--replicate", fmt::format("\"{}\" is not NX,NY, two counts from 1 on", text));
+}
+
+void declare_convert(CLI::App& app, Request& request) {
+  exporters::ConvertRequest& conversion = request.convert;
+  app.add_option("PACK", conversion.pack, "pack (NAME.hdf)")->required();
+  app.add_option("--to", conversion.format, "format, see below")->required()->type_name("FORMAT");
+  app.add_option("-o,--output", conversion.file,
+                 "file to write; without it, NAME with the format's ending, beside the pack")
+      ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--trim",
+         [&conversion](const std::string& word) {
+           conversion.trim = word == trims[0] ? exporters::Trim::drop : exporters::Trim::cut;
+         },
+         "leave out particles above the height asked: those that reach above it (drop), or those with their centre "
+         "above it (cut)")
+      ->check(CLI::IsMember(std::vector<std::string>(trims.begin(), trims.end())))
+      ->type_name("drop|cut");
+  app.add_option_function<std::string>(
+         "--replicate", [&conversion](const std::string& text) { read_copies(text, conversion.copies); },
+         "write so many copies side by side along x and y; periodic axes only")
+      ->type_name("NX,NY");
+  app.add_flag("--force", request.run.force, "replace files that exist");
+  app.footer("Formats:\n" + lines(format_words()));
+}
+
+constexpr std::int64_t most_particles = std::int64_t{1} << 40;  // as scenes may have
+constexpr int most_ranks = 1 << 24;
+
+// A length above 0 [m]: "0.2", or "20 cm".
+std::optional<double> read_length(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool plain = error == std::errc() && end == text.data() + text.size();
+  const std::optional<double> length = plain ? value : input::parse_scalar(text, input::length).value;
+  return length && *length > 0.0 && std::isfinite(*length) ? length : std::nullopt;
+}
+
+// "L,B" or "L", each a length or "open".
+void read_sides(const std::string& text, std::vector<std::optional<double>>& sides) {
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    const bool open = word == "open";
+    sides.push_back(open ? std::nullopt : read_length(word));
+    if (!open && !sides.back()) {
+      throw CLI::ValidationError("--floor", fmt::format("\"{}\" is neither a length above 0 nor \"open\"", word));
+    }
+  }
+}
+
+void declare_estimate(CLI::App& app, Request& request) {
+  declare_scene(app, request);
+  forecast::Question& question = request.question;
+  app.add_option("--particles", question.particles, "of the pack; then its height is found, or its floor")
+      ->check(CLI::Range(std::int64_t{1}, most_particles))
+      ->type_name("N");
+  app.add_option_function<std::string>(
+         "--height",
+         [&question](const std::string& text) {
+           question.height = read_length(text);
+           if (!question.height) {
+             throw CLI::ValidationError("--height", fmt::format("\"{}\" is no length above 0", text));
+           }
+         },
+         "to be filled, instead of the scene's [m]; with --particles, the floor is found, of the scene's shape")
+      ->type_name("H");
+  app.add_option_function<std::string>(
+         "--floor", [&question](const std::string& text) { read_sides(text, question.sides); },
+         "sides of the floor, instead of the scene's [m]; one that is the word open is found")
+      ->type_name("L,B");
+  app.add_option("--fraction", question.fraction, "solid fraction of the pile, instead of the estimate")
+      ->check(CLI::Range(0.01, 0.99))
+      ->type_name("F");
+  app.add_option("--ranks", question.ranks, "that the run is to have; without it, those that are here")
+      ->check(CLI::Range(1, most_ranks))
+      ->type_name("N");
+  app.add_flag_callback(
+      "--no-probe", [&question] { question.probe = false; }, "do not try how fast this machine is: no time is told");
+  app.add_flag("--json", question.json, "print JSON");
+}
+
+void declare_nothing(CLI::App&, Request&) {}
+
+void declare_completion(CLI::App& app, Request& request) {
+  app.add_option("SHELL", request.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+}
+
+struct Declaration {
+  Command command;
+  const char* name;
+  const char* text;
+  void (*declare)(CLI::App&, Request&);
+};
+constexpr std::array declarations{
+    Declaration{Command::run, "run", "make the pack: NAME.hdf, NAME.json, NAME.log, NAME.steps.csv", declare_run},
+    Declaration{Command::check, "check", "read and check the scene, print every key as it will be used, do nothing",
+                declare_scene},
+    Declaration{Command::estimate, "estimate",
+                "tell what the scene will take: particles, height or floor, layers, steps, memory, files, time",
+                declare_estimate},
+    Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
+    Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
+    Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},
+    Declaration{Command::analyze, "analyze",
+                "measure a pack inside: profiles, contacts, forces, g(r), order; NAME.analysis.json", declare_analyze},
+    Declaration{Command::convert, "convert", "write a pack in the format of another code", declare_convert},
+    Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
+    Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
+                declare_completion}};
+
+std::string end_words() { return "Signals:\n" + lines(signal_words()) + "Exit codes:\n" + lines(exit_code_words()); }
+
+void declare_all(CLI::App& app, Request& request) {
+  app.set_version_flag("--version", version_text(), "print version, git id and compiler");
+  app.require_subcommand(1);
+  app.footer(end_words());
+  for (const Declaration& d : declarations) {
+    CLI::App* command = app.add_subcommand(d.name, d.text);
+    d.declare(*command, request);
+    command->callback([&request, &d] { request.command = d.command; });
+  }
+}
+
+// "run" is understood where no command stands.
+void name_command(std::vector<std::string>& words) {
+  constexpr std::array<std::string_view, 3> answers{"-h", "--help", "--version"};
+  const auto known = [&](const Declaration& d) { return words.front() == d.name; };
+  if (words.empty() || std::ranges::any_of(declarations, known)) return;
+  if (std::ranges::find(answers, words.front()) == answers.end()) words.insert(words.begin(), "run");
+}
+
+OptionWords words_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();  // "N:POSITIVE" with its check
+  OptionWords words{
+      .names = {}, .value = type.substr(0, type.find(':')), .choices = {}, .text = option.get_description()};
+  if (option.get_positional()) return {{option.get_name()}, "", {}, words.text};
+  for (const std::string& name : option.get_snames()) words.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) words.names.push_back("--" + name);
+  if (option.get_items_expected_max() == 0) words.value.clear();  // a flag
+  return words;
+}
+
+}  // namespace
+
+std::vector<CommandWords> command_words() {
+  Request request;
+  CLI::App app{about, "packmpi"};
+  declare_all(app, request);
+  std::vector<CommandWords> all;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    CommandWords words{command->get_name(), command->get_description(), {}, {}, {}};
+    for (const CLI::Option* option : command->get_options()) {
+      if (option == command->get_help_ptr()) continue;
+      (option->get_positional() ? words.arguments : words.options).push_back(words_of(*option));
+    }
+    if (words.name == "convert") words.table = format_words();
+    if (words.name == "completion") words.arguments.front().choices = {"bash", "zsh", "fish"};
+    all.push_back(words);
+  }
+  return all;
+}
+
+std::variant<Request, Reply> parse_command_line(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  name_command(words);
+  Request request;
+  CLI::App app{about, "packmpi"};
+  declare_all(app, request);
+  try {
+    std::vector<std::string> reversed(words.rbegin(), words.rend());  // CLI11 takes them from the back
+    app.parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, err;
+    const int code = app.exit(error, out, err);
+    return Reply{out.str() + err.str(), code == 0 ? 0 : static_cast<int>(ExitCode::bad_input)};
+  }
+  if (request.command == Command::schema) return Reply{cli::scene_schema(), 0};
+  if (request.command == Command::manual) return Reply{manual_page(), 0};
+  if (request.command == Command::completion) return Reply{completion(request.shell), 0};
+  return request;
+}
+
+}  // namespace packmpi::cli

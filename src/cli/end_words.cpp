@@ -1,0 +1,25 @@
+// What the help text and the manual say of signals and exit codes.
+#include "cli/options.hpp"
+
+namespace packmpi::cli {
+
+const std::vector<EndWords>& signal_words() {
+  static const std::vector<EndWords> lines{{"USR1", "write a checkpoint and go on"},
+                                           {"USR2, TERM, INT", "write a checkpoint and end with code 75"},
+                                           {"a second TERM or INT", "end at once"},
+                                           {"a file STOP in the folder", "the same as USR2"}};
+  return lines;
+}
+
+const std::vector<EndWords>& exit_code_words() {
+  static const std::vector<EndWords> lines{{"0", "done, and the targets are met"},
+                                           {"2", "bad input or usage"},
+                                           {"3", "finished, but a target was missed"},
+                                           {"4", "numerical failure"},
+                                           {"5", "files could not be read or written"},
+                                           {"6", "checkpoint unusable"},
+                                           {"75", "stopped early with a checkpoint: --restart auto goes on"}};
+  return lines;
+}
+
+}  // namespace packmpi::cli

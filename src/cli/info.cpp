@@ -1,0 +1,78 @@
+#include "cli/info.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "pack/checkpoint.hpp"
+#include "pack/pack.hpp"
+
+namespace packmpi::cli {
+namespace {
+
+std::string describe(const std::string& path, const pack::RunState& state) {
+  constexpr std::array<const char*, 3> phases{"before an insertion", "settling", "final stage"};
+  return fmt::format(
+      "{}: a checkpoint, sound\n  layer {}, {}, step {} ({} of this phase)\n  {} particles in {}D, {}\n  serial {}, by "
+      "packmpi "
+      "{} ({})\n",
+      path, state.first_ids.size(), phases.at(static_cast<std::size_t>(state.phase)), state.steps, state.done,
+      state.count, state.dimension, state.rotation ? "with spin" : "without spin", state.serial, state.version,
+      state.git);
+}
+
+// A number of the particle datasets' bits (FNV-1a over their bytes in turn): equal packs have equal ones.
+class Bits {
+ public:
+  template <class T>
+  void add(const std::vector<T>& values) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    for (std::size_t k = 0; k < values.size() * sizeof(T); ++k) hash_ = (hash_ ^ bytes[k]) * 0x100000001b3ULL;
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+};
+
+std::string describe(const std::string& path, const pack::PackRows& pack) {
+  for (std::size_t k = 0; k < pack.id.size(); ++k) {
+    if (pack.id[k] != static_cast<GlobalId>(k)) {
+      throw Error(ExitCode::io_failure,
+                  fmt::format("{}: row {} has the id {}: the pack is damaged", path, k, pack.id[k]));
+    }
+  }
+  Bits bits;
+  bits.add(pack.id);
+  bits.add(pack.position);
+  bits.add(pack.radius);
+  bits.add(pack.velocity);
+  bits.add(pack.spin);
+  bits.add(pack.layer);
+  bits.add(pack.contacts);
+  return fmt::format("{}: a pack\n  {} particles in {}D, {} layers, {}\n  digest of the particles {:016x}\n", path,
+                     pack.id.size(), pack.dimension, pack.layer.empty() ? 0 : pack.layer.back() + 1,
+                     pack.spin.empty() ? "without spin" : "with spin", bits.value());
+}
+
+std::string describe_here(const std::string& path) {
+  if (pack::is_pack(path)) return describe(path, pack::read_pack(path));
+  const comm::Comm alone(MPI_COMM_SELF);
+  const pack::RunState state = pack::read_state(path);
+  particles::Store store(particles::layout_of(state.dimension, state.rotation));
+  return describe(path, pack::read_checkpoint(alone, path, store));
+}
+
+}  // namespace
+
+std::string describe_file(const comm::Comm& comm, const std::string& path) {
+  std::string words;
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) words = describe_here(path);
+  });
+  return comm.broadcast(0, words);
+}
+
+}  // namespace packmpi::cli

@@ -1,0 +1,137 @@
+#include "cli/program.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "cli/convert.hpp"
+#include "cli/info.hpp"
+#include "comm/session.hpp"
+#include "disk/text_file.hpp"
+#include "forecast/estimate.hpp"
+#include "input/fidelity.hpp"
+#include "input/starter.hpp"
+#include "report/report.hpp"
+#include "run/analyze.hpp"
+#include "run/ensemble.hpp"
+#include "run/files.hpp"
+#include "run/make_pack.hpp"
+#include "run/signals.hpp"
+#include "scene/expectation.hpp"
+#include "scene/ownership.hpp"
+
+namespace packmpi::cli {
+namespace {
+
+void warn_of_step(const scene::Scene& scene) {
+  const double safe = scene::safe_time_step(scene.in, scene.sizes);
+  if (scene.time_step > safe) {
+    log::warn(fmt::format(
+        "time step {:g} s is beyond eq. (23) for the smallest particles ({:.3g} s), though not for the mean",
+        scene.time_step, safe));
+  }
+}
+
+// `packmpi check`: the scene as it will be used, and what follows from it.
+int check(const comm::Comm& comm, const scene::Scene& scene) {
+  const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
+  if (comm.rank() == 0) {
+    const auto [nx, ny] = ownership.grid().counts();
+    fmt::print(
+        "{}\n# {} is sound.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
+        "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
+        scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
+        std::int64_t{nx} * ny,
+        scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
+    fmt::print("# time step of layers {:g} s, thaw {:g} s\n", scene.settling.time_step, scene.thaw);
+    fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);
+    for (const std::string& line : input::preset_in_use(scene.in)) fmt::print("#   {}\n", line);
+  }
+  return 0;
+}
+
+int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& options) {
+  const run::Signals signals;
+  const report::RunRecord record = run::make_pack(comm, scene, options);
+  const bool met = run::targets_met(record);
+  if (comm.rank() == 0) {
+    fmt::print("{}\n", report::to_table(record));
+    std::fflush(stdout);
+    log::info(fmt::format("{} in {}", met ? "done" : "finished, but a target was missed",
+                          text::duration(record.wall_seconds)));
+  }
+  return static_cast<int>(met ? ExitCode::done : ExitCode::target_missed);
+}
+
+// `packmpi init`: a scene to begin with.
+int begin_scene(const comm::Comm& comm, const Request& request) {
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0 && !request.run.force && std::filesystem::exists(request.run.scene)) {
+      throw Error(ExitCode::bad_input, request.run.scene + " exists; use --force to replace it");
+    }
+  });
+  disk::write_text(comm, request.run.scene, input::starter(request.dimension));
+  log::info(fmt::format("{} written; edit it, then: packmpi check {}", request.run.scene, request.run.scene));
+  return 0;
+}
+
+int act(const comm::Comm& comm, const Request& request) {
+  log::start(comm.rank(), std::nullopt, request.run.verbosity);
+  if (request.command == Command::info) {
+    const std::string words = describe_file(comm, request.run.scene);
+    if (comm.rank() == 0) fmt::print("{}", words);
+    return 0;
+  }
+  if (request.command == Command::init) return begin_scene(comm, request);
+  if (request.command == Command::analyze) {
+    const std::string table = run::analyze(comm, request.run.scene);
+    if (comm.rank() == 0) fmt::print("{}", table);
+    return 0;
+  }
+  if (request.command == Command::convert) {
+    const std::string words = convert(comm, request);
+    if (comm.rank() == 0) fmt::print("{}", words);
+    return 0;
+  }
+  if (request.command == Command::estimate) {
+    const report::Estimate told = forecast::estimate(comm, request.run.scene, request.run.overrides, request.question);
+    if (comm.rank() == 0) fmt::print("{}", request.question.json ? report::to_json(told) : report::to_table(told));
+    return 0;
+  }
+  const input::Input in = input::read(comm, request.run.scene, request.run.overrides);
+  comm::petsc_options(in.petsc.options);
+  if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
+    return run::make_ensemble(comm, in, request.run);
+  const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
+  warn_of_step(scene);
+  return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
+}
+
+}  // namespace
+
+int program(MPI_Comm world, int argc, const char* const* argv) {
+  const comm::Comm comm(world);
+  const auto parsed = parse_command_line(argc, argv);
+  if (const Reply* reply = std::get_if<Reply>(&parsed)) {
+    if (comm.rank() == 0) fmt::print(reply->code == 0 ? stdout : stderr, "{}", reply->text);
+    return reply->code;
+  }
+  int code = 0;
+  try {
+    code = act(comm, std::get<Request>(parsed));
+  } catch (const Error& error) {  // thrown on every rank alike
+    const bool stopped = error.code() == ExitCode::stopped_early;
+    if (comm.rank() == 0) stopped ? log::warn(error.what()) : log::error(error.what());
+    code = static_cast<int>(error.code());
+  } catch (const std::exception& error) {  // one rank alone: the others may wait for it
+    comm::abort_all(static_cast<int>(ExitCode::numerical_failure),
+                    fmt::format("rank {}: {}", comm.rank(), error.what()));
+  }
+  log::finish();
+  return code;
+}
+
+}  // namespace packmpi::cli

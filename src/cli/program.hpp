@@ -1,0 +1,11 @@
+/// The program behind main(): command line to exit code.
+#pragma once
+#include <mpi.h>
+
+namespace packmpi::cli {
+
+/// Collective over `world`. Reads the command line, does what it says, returns the exit code, the same on every rank.
+/// Errors are printed once, on rank 0, to stderr. MPI and PETSc must be running (comm::Session).
+[[nodiscard]] int program(MPI_Comm world, int argc, const char* const* argv);
+
+}  // namespace packmpi::cli

@@ -1,0 +1,110 @@
+#include "cli/scene_schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "input/keys.hpp"
+
+namespace packmpi::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using input::Key;
+
+Json number(const Key& key, const char* type) {
+  Json schema{{"type", type}};
+  if (std::isfinite(key.range.low)) schema[key.range.low_open ? "exclusiveMinimum" : "minimum"] = key.range.low;
+  if (std::isfinite(key.range.high)) schema[key.range.high_open ? "exclusiveMaximum" : "maximum"] = key.range.high;
+  return schema;
+}
+
+// A number, or text with a unit ("20 mm"), or "auto".
+Json quantity(const Key& key) { return {{"anyOf", Json::array({number(key, "number"), {{"type", "string"}}})}}; }
+
+// One value of the key, or one entry of its list.
+template <class Value>
+Json value_schema(const Key& key) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return {{"type", "boolean"}};
+  } else if constexpr (std::is_integral_v<Value>) {
+    return number(key, "integer");
+  } else if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
+    return quantity(key);
+  } else if constexpr (std::is_same_v<Value, std::string> || std::is_enum_v<Value>) {
+    const auto words = input::choices(key);
+    if (words.empty()) return {{"type", "string"}};
+    return {{"enum", words}};
+  } else {
+    return Json::object();  // whatever the reader takes
+  }
+}
+
+Json list_schema(const Json& entry) { return {{"type", "array"}, {"items", entry}}; }
+
+Json schema_of(const Key& key) {
+  input::Input sample;
+  sample.near_field.emplace();
+  Json schema = std::visit(
+      [&](const auto* slot) -> Json {
+        using Value = std::remove_cvref_t<decltype(*slot)>;
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          return list_schema(value_schema<double>(key));
+        } else if constexpr (requires { typename Value::value_type; } && !std::is_same_v<Value, std::string> &&
+                             !std::is_same_v<Value, std::optional<double>>) {
+          return list_schema(value_schema<typename Value::value_type>(key));
+        } else {
+          return value_schema<Value>(key);
+        }
+      },
+      key.slot(sample));
+  std::string meaning(key.doc);
+  if (!key.unit.empty()) meaning += " [" + std::string(key.unit) + "]";
+  if (!key.when.words.empty()) meaning += " Only if " + std::string(key.when.words) + ".";
+  schema["description"] = meaning;
+  return schema;
+}
+
+// The object of a table's path, made with its parents.
+Json& table_at(Json& root, std::string_view path) {
+  Json* here = &root;
+  while (!path.empty()) {
+    const std::size_t dot = path.find('.');
+    Json& table = (*here)["properties"][std::string(path.substr(0, dot))];
+    if (table.is_null()) table = {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+    here = &table;
+    path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
+  }
+  return *here;
+}
+
+// A key without a default must be there, and so must the tables it is in.
+void require(Json& root, std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot != std::string_view::npos) require(root, path.substr(0, dot));
+  Json& table = table_at(root, dot == std::string_view::npos ? "" : path.substr(0, dot));
+  const Json name(path.substr(dot + 1));
+  Json& names = table["required"];
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+}  // namespace
+
+std::string scene_schema() {
+  Json root{{"$schema", "http://json-schema.org/draft-07/schema#"},
+            {"title", "packmpi scene"},
+            {"type", "object"},
+            {"additionalProperties", false},
+            {"properties", Json::object()}};
+  for (const Key& key : input::keys()) {
+    const std::size_t dot = key.path.rfind('.');
+    const std::string_view table = dot == std::string_view::npos ? "" : key.path.substr(0, dot);
+    Json& object = table_at(root, table);
+    object["properties"][std::string(key.path.substr(dot + 1))] = schema_of(key);
+    if (!key.standard && key.when.holds == nullptr) require(root, key.path);
+  }
+  return root.dump(2) + "\n";
+}
+
+}  // namespace packmpi::cli

@@ -1,0 +1,29 @@
+/// An HDF5 file that all ranks write and that appears whole or not at all. Private to this room.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "disk/hdf5.hpp"
+
+namespace packmpi::disk {
+
+/// Collective. Writes PATH: to PATH.tmp, rows by all ranks, a seal (output/seal.hpp) at the end, fsync'ed, renamed, the
+/// folder fsync'ed. `frame` makes all of the file but the rows of `plan` (their datasets included) and runs on rank 0.
+/// Throws Error(io_failure) on every rank, with the system's reason; then PATH is untouched (or, if it was the last
+/// fsync that failed, the new file) and PATH.tmp is gone.
+///
+/// HDF5 touches no disk in it: rank 0 lets it write the headers to memory and copies them, and since all datasets are
+/// contiguous every rank knows where its rows belong. Written by parallel HDF5 1.10 over MPI-IO instead, one failing
+/// write can make H5Fclose wait for ever, or fail in a way that ends the program at its exit (both tried).
+void write_whole_file(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
+                      const std::function<void(hid_t file)>& frame);
+
+/// Bytes of the file that write_whole_file() would write, rows and seal included: `frame` makes it in memory, where
+/// they are a hole; a name in the folder for temporary files is taken for a moment. Rank-local. Throws
+/// Error(io_failure).
+[[nodiscard]] std::int64_t whole_file_bytes(const std::vector<h5::Column>& plan,
+                                            const std::function<void(hid_t file)>& frame);
+
+}  // namespace packmpi::disk

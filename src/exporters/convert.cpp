@@ -1,0 +1,153 @@
+#include "exporters/convert.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "disk/files.hpp"
+#include "exporters/formats.hpp"
+#include "exporters/rows_file.hpp"
+#include "exporters/specimen.hpp"
+#include "input/read.hpp"
+#include "pack/pack_file.hpp"
+
+namespace packmpi::exporters {
+namespace {
+
+[[noreturn]] void refuse_request(const std::string& words) { throw Error(ExitCode::bad_input, words); }
+
+const Format& format_of(const std::string& name) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const Format& format : formats()) {
+    if (name == format.words.name) return format;
+    names.emplace_back(format.words.name);
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  const auto near = text::closest(name, names);
+  refuse_request(fmt::format("--to {}: no such format{}; there are {}", name,
+                             near ? fmt::format(" (did you mean {}?)", *near) : "", list));
+}
+
+/// The request with its file named, and the companion's path ("" if the format has none).
+struct Names {
+  ConvertRequest request;
+  std::string companion;
+};
+
+Names name_files(ConvertRequest request, const FormatWords& words) {
+  if (request.file.empty()) {
+    std::filesystem::path path = request.pack;
+    if (path.extension() == ".hdf") path.replace_extension();
+    request.file = path.string() + words.ending;
+  }
+  if (*words.companion == '\0') return {request, ""};
+  const std::string companion = std::filesystem::path(request.file).replace_extension(words.companion).string();
+  if (companion == request.file) {
+    refuse_request(fmt::format("-o {}: this name is that of the second file of {}; choose another ending", request.file,
+                               words.name));
+  }
+  return {request, companion};
+}
+
+void check_free(const Names& names) {
+  for (const std::string& path : {names.request.file, names.companion}) {
+    std::error_code ignored;
+    if (path.empty() || !std::filesystem::exists(path, ignored)) continue;
+    if (std::filesystem::is_directory(path, ignored))
+      refuse_request(path + " is a folder; -o wants the name of a file");
+    if (std::filesystem::equivalent(path, names.request.pack, ignored)) refuse_request(path + " is the pack itself");
+    if (!names.request.force) refuse_request(path + " exists; use --force to replace it, or -o FILE");
+  }
+}
+
+void check_copies(const ConvertRequest& request, const geometry::Box& box) {
+  for (int axis = 0; axis < 2; ++axis) {
+    const int n = request.copies[static_cast<std::size_t>(axis)];
+    if (n < 1) refuse_request("--replicate: the numbers of copies must be 1 or more");
+    if (n == 1) continue;
+    if (axis >= box.lateral_axes()) refuse_request("--replicate: a 2D pack has no second lateral axis; use NX or NX,1");
+    if (!box.periodic[static_cast<std::size_t>(axis)]) {
+      refuse_request(
+          fmt::format("--replicate: {} ends in walls, so copies would not fit together there; only periodic axes can "
+                      "be replicated",
+                      "xy"[axis]));
+    }
+  }
+}
+
+/// The scene a pack was made from; what is wrong with it is wrong with the pack.
+scene::Scene scene_of(const pack::PackFile& file) {
+  try {
+    return scene::build(input::parse(file.text("/provenance", "effective_input"), "the scene in it", {}));
+  } catch (const Error& error) {
+    throw Error(ExitCode::io_failure, error.what());
+  }
+}
+
+/// Runs the local `action` on all ranks; an io_failure is told with the path of the pack.
+template <class Action>
+void reading(const comm::Comm& comm, const std::string& path, Action&& action) {
+  comm::agree_on(comm, [&] {
+    try {
+      action();
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::io_failure) throw;
+      throw Error(error.code(), fmt::format("cannot read {}: {}", path, error.what()));
+    }
+  });
+}
+
+/// Temporary files first, then their names.
+void write_files(const comm::Comm& comm, const Names& names, const Document& document, const Selection& selection) {
+  const std::string& path = names.request.file;
+  const std::string temporary = path + ".tmp";
+  try {
+    write_rows_file(comm, temporary, document, selection);
+    comm::agree_on(comm, [&] {
+      if (comm.rank() != 0) return;
+      if (!names.companion.empty()) disk::write_whole(names.companion, document.companion);
+      disk::commit(temporary, path);
+    });
+  } catch (const Error&) {  // agreed: every rank is here
+    if (comm.rank() == 0) disk::discard(temporary);
+    throw;
+  }
+}
+
+}  // namespace
+
+std::vector<FormatWords> convert_formats() {
+  std::vector<FormatWords> words;
+  for (const Format& format : formats()) words.push_back(format.words);
+  return words;
+}
+
+Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
+  const disk::h5::Quiet quiet;
+  const Format& format = format_of(request.format);  // pure: all ranks throw the same
+  const Names names = name_files(request, format.words);
+  std::optional<pack::PackFile> file;
+  scene::Scene scene;
+  reading(comm, request.pack, [&] {
+    file.emplace(request.pack);
+    scene = scene_of(*file);
+  });
+  pack::check_pack(comm, request.pack);
+  check_copies(request, scene.box);
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) check_free(names);
+  });
+  const Selection selection(*file, scene.box, request);
+  const Specimen specimen = survey(comm, *file, selection, names.request, scene);
+  write_files(comm, names, format.make(specimen), selection);
+  Converted done{{names.request.file}, specimen.count, specimen.volume};
+  if (!names.companion.empty()) done.files.push_back(names.companion);
+  return done;
+}
+
+}  // namespace packmpi::exporters

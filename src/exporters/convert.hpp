@@ -1,0 +1,51 @@
+/// A pack in the format of another code (doc/convert.md).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "comm/comm.hpp"
+
+namespace packmpi::exporters {
+
+/// What becomes of particles that are higher than the height asked, H_d.
+enum class Trim {
+  none,
+  drop,  ///< every particle that reaches above H_d is left out
+  cut    ///< those with their centre above H_d are left out: the plane cuts by halves, spheres stay whole
+};
+
+struct ConvertRequest {
+  std::string pack;    ///< path
+  std::string format;  ///< a name of convert_formats()
+  std::string file{};  ///< path of what is written; "": beside the pack, with the format's ending
+  Trim trim = Trim::none;
+  std::array<int, 2> copies{1, 1};  ///< side by side along x and y; more than one along periodic axes only
+  bool force = false;               ///< existing files may be replaced
+};
+
+/// What was written.
+struct Converted {
+  std::vector<std::string> files;
+  std::int64_t particles = 0;
+  double volume = 0.0;  ///< [m3] of the particles as spheres; 9 digits
+};
+
+/// One format, for help and documentation.
+struct FormatWords {
+  const char* name;
+  const char* ending;     ///< of the file, with its first point
+  const char* companion;  ///< ending of the second file; "": there is none
+  const char* text;       ///< who reads it
+};
+[[nodiscard]] std::vector<FormatWords> convert_formats();
+
+/// Collective. Reads the pack in batches and writes it in the format asked, each rank its share of the particles: the
+/// same bytes on any number of ranks, in memory that does not depend on the particles. Files appear whole or not at
+/// all. Throws on all ranks, before anything is written where possible: Error(bad_input) for files that exist, a format
+/// that is not known, copies along a wall; Error(io_failure) for what cannot be read or written.
+Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request);
+
+}  // namespace packmpi::exporters

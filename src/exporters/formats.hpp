@@ -1,0 +1,16 @@
+/// The formats there are: the one table for the command line, the documentation and the writing. Private to this room.
+#pragma once
+#include <span>
+
+#include "exporters/convert.hpp"
+#include "exporters/document.hpp"
+
+namespace packmpi::exporters {
+
+struct Format {
+  FormatWords words;
+  Document (*make)(const Specimen&);
+};
+[[nodiscard]] std::span<const Format> formats();
+
+}  // namespace packmpi::exporters

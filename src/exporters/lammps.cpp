@@ -1,0 +1,96 @@
+// LAMMPS: read_data for atom_style sphere, and an in-file with the scene's law.
+#include <algorithm>
+
+#include "exporters/lammps_family.hpp"
+#include "exporters/law.hpp"
+
+namespace packmpi::exporters::lammps {
+namespace {
+
+/// "hertz/material ...", for pairs or walls. A wall's modulus counts twice in LAMMPS: as the particle's and as its own.
+std::string contact(const Specimen& s, double modulus, double friction) {
+  const input::Input& in = s.scene.in;
+  // Slip is damped by x normal dampings up to Coulomb's limit; x makes that damping the same for every xi.
+  constexpr double least = 1e-3;
+  const double xi = std::max(in.contact.damping_ratio, least);
+  return fmt::format("hertz/material {} {} {} tangential linear_nohistory {} {} damping tsuji", modulus,
+                     tsuji_restitution(xi), in.particles.poisson_ratio, 1.0 / xi, friction);
+}
+
+std::string walls(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  const double factor = in.contact.wall == input::WallStiffness::rigid ? 2.0 : 1.0;
+  const std::string law = contact(s, factor * in.particles.youngs_modulus, in.contact.wall_friction);
+  std::string text;
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+    if (s.periodic(axis)) continue;
+    text += fmt::format("fix             wall_{0} all wall/gran granular {1} {0}plane 0 {2}\n", "xyz"[axis], law,
+                        s.size[axis]);
+  }
+  return text +
+         fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, "xyz"[s.vertical()]);
+}
+
+std::string drag(const Specimen& s) {
+  const input::Drag& drag = s.scene.in.drag;
+  if (!(drag.coefficient > 0.0)) return "";
+  std::string text = fmt::format("fix             drag all viscous {}\n", drag.coefficient);
+  const Vec3& u = drag.fluid_velocity;
+  if (u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0) {
+    text += fmt::format("fix             stream all addforce {} {} {}\n", drag.coefficient * u[0],
+                        drag.coefficient * u[1], drag.coefficient * u[2]);
+  }
+  return text;
+}
+
+std::string in_file(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  std::string text = notes(s, Fluid::carried, "# ");
+  text += fmt::format(
+      "# lmp -in THIS [-var steps N]: reads the pack, tells what is in it, and lets it settle for some steps.\n"
+      "variable        data index {}\nvariable        steps index 200\n\n"
+      "units           si\ndimension       {}\natom_style      sphere\nboundary       {}\ncomm_modify     vel yes\n"
+      "read_data       ${{data}}\n\n"
+      "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n"
+      "pair_style      granular\npair_coeff      * * {}\n",
+      s.file, s.flat() ? 2 : 3, boundary_words(s), s.scene.skin,
+      contact(s, in.particles.youngs_modulus, in.contact.friction));
+  text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
+                      s.flat() ? "0 -1 0" : "0 0 -1");
+  text += drag(s) + walls(s);
+  text += fmt::format("fix             move all {}\n", s.rotation ? "nve/sphere" : "nve");
+  if (s.flat()) text += "fix             plane all enforce2d\n";
+  text += fmt::format(
+      "timestep        {}\n\n"
+      "compute         diameter all property/atom diameter\n"
+      "variable        volume atom PI/6*c_diameter*c_diameter*c_diameter\n"
+      "compute         volume all reduce sum v_volume\n"
+      "compute         contact all pair/local force\n"
+      "compute         strongest all reduce max c_contact\n"
+      "variable        volume_now equal c_volume\n"
+      "variable        force_now equal c_strongest\n"
+      "thermo_style    custom step atoms ke c_volume c_strongest\n"
+      "thermo_modify   lost error norm no\nthermo          100\n\n"
+      "run             0\n"
+      "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
+      "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n"
+      "run             ${{steps}}\n"
+      "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
+      "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n",
+      s.scene.time_step);
+  return text;
+}
+
+}  // namespace
+
+Document make(const Specimen& s) {
+  const double density = s.scene.in.particles.density;
+  Document document;
+  document.sections.push_back({data_head(s, "LAMMPS", 1, "Atoms  # sphere"),
+                               [density](Text& out, const Outgoing& p) { atom_row(out, p, density); }});
+  document.sections.push_back(velocities());
+  document.companion = in_file(s);
+  return document;
+}
+
+}  // namespace packmpi::exporters::lammps

@@ -1,0 +1,45 @@
+#include "exporters/lammps_family.hpp"
+
+#include <fmt/compile.h>
+
+namespace packmpi::exporters {
+namespace {
+
+constexpr std::size_t longest_line = 250;  // 254 characters are read
+
+void velocity_row(Text& out, const Outgoing& p) {
+  const Vec3& v = p.row.velocity;
+  const Vec3& w = p.row.spin;
+  fmt::format_to(fmt::appender(out), FMT_COMPILE("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n"), p.row.id,
+                 v[0], v[1], v[2], w[0], w[1], w[2]);
+}
+
+}  // namespace
+
+std::string data_head(const Specimen& s, const char* code, int kinds, const char* section) {
+  std::string first = fmt::format("{} data file by ", code);
+  for (const std::string& line : header_lines(s)) first += line + "; ";
+  const auto box = padded_box(s);
+  return fmt::format(
+      "{}\n\n{} atoms\n{} atom types\n\n{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n{:.17g} {:.17g} zlo "
+      "zhi\n\n{}\n\n",
+      first.substr(0, longest_line), s.count, kinds, box[0].low, box[0].high, box[1].low, box[1].high, box[2].low,
+      box[2].high, section);
+}
+
+void atom_row(Text& out, const Outgoing& p, double density) {
+  fmt::format_to(fmt::appender(out), FMT_COMPILE("{} 1 {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n"), p.row.id,
+                 2.0 * p.row.radius, density, p.row.position[0], p.row.position[1], p.row.position[2]);
+}
+
+Section velocities() { return {"\nVelocities\n\n", velocity_row}; }
+
+std::string boundary_words(const Specimen& s) {
+  std::string words;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    words += s.periodic(axis) || (axis == 2 && s.flat()) ? " p" : " f";
+  }
+  return words;
+}
+
+}  // namespace packmpi::exporters

@@ -1,0 +1,22 @@
+/// What LAMMPS and LIGGGHTS have in common. Private to this room.
+#pragma once
+#include <string>
+
+#include "exporters/document.hpp"
+
+namespace packmpi::exporters {
+
+/// All of a data file above its rows of atoms; the first line, which both skip, is the header.
+/// `kinds`: atom types; `section`: "Atoms" with or without its comment.
+[[nodiscard]] std::string data_head(const Specimen& specimen, const char* code, int kinds, const char* section);
+
+/// "id type diameter density x y z".
+void atom_row(Text& out, const Outgoing& particle, double density);
+
+/// The second section of a data file: "id vx vy vz wx wy wz".
+[[nodiscard]] Section velocities();
+
+/// " p f f": what the command boundary wants.
+[[nodiscard]] std::string boundary_words(const Specimen& specimen);
+
+}  // namespace packmpi::exporters

@@ -1,0 +1,61 @@
+#include "exporters/law.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace packmpi::exporters {
+namespace {
+
+double tsuji(double e) {
+  return 1.2728 + e * (-4.2783 + e * (11.087 + e * (-22.348 + e * (27.467 + e * (-18.022 + e * 4.8218)))));
+}
+
+}  // namespace
+
+double tsuji_restitution(double damping_ratio) {
+  const double wanted = std::sqrt(6.0) * damping_ratio;
+  double low = -2.0;  // falls all the way from here to ...
+  double high = 1.1;  // ... below zero
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    (tsuji(middle) > wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double restitution(double damping_ratio) {
+  const double beta = std::sqrt(1.2) * damping_ratio;
+  return beta < 1.0 ? std::exp(-std::numbers::pi * beta / std::sqrt(1.0 - beta * beta)) : 0.0;
+}
+
+double shear_modulus(const Specimen& specimen) {
+  const input::Particles& p = specimen.scene.in.particles;
+  return p.youngs_modulus / (2.0 * (1.0 + p.poisson_ratio));
+}
+
+std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid) {
+  const input::Input& in = specimen.scene.in;
+  std::vector<std::string> lines;
+  if (specimen.scene.features.near_field) lines.emplace_back("the near-field force of the scene");
+  if (in.drag.coefficient > 0.0) {
+    const Vec3& u = in.drag.fluid_velocity;
+    const bool moves = u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0;
+    if (fluid == Fluid::not_carried) lines.emplace_back("the drag of the scene");
+    if (fluid == Fluid::at_rest && moves) lines.emplace_back("the velocity of the scene's fluid");
+  }
+  const bool slides = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  if (specimen.rotation && slides && in.contact.friction_velocity == input::FrictionVelocity::centre) {
+    lines.emplace_back("friction by the velocities of centres: here it is that of the contact point");
+  }
+  return lines;
+}
+
+std::string notes(const Specimen& specimen, Fluid fluid, std::string_view mark) {
+  std::string text = header(specimen, mark);
+  for (const std::string& line : left_out(specimen, fluid)) text += fmt::format("{}not carried over: {}\n", mark, line);
+  return text;
+}
+
+}  // namespace packmpi::exporters

@@ -1,0 +1,103 @@
+// LIGGGHTS: read_data for atom_style granular, and an in-file with the scene's law.
+#include <algorithm>
+
+#include "exporters/lammps_family.hpp"
+#include "exporters/law.hpp"
+
+namespace packmpi::exporters::liggghts {
+namespace {
+
+constexpr double rigid_factor = 1e5;        // a wall so much stiffer than the particles is rigid to five digits
+constexpr double least_restitution = 0.05;  // that LIGGGHTS takes; the damping of a ratio of 0.63
+
+std::string material(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  const double e = std::max(least_restitution, restitution(in.contact.damping_ratio));
+  const double modulus = in.particles.youngs_modulus;
+  const double wall = in.contact.wall == input::WallStiffness::rigid ? rigid_factor * modulus : modulus;
+  const double mu = in.contact.friction;
+  const double mu_wall = in.contact.wall_friction;
+  return fmt::format(
+      "# type 1: particles; type 2: walls\n"
+      "fix             m1 all property/global youngsModulus peratomtype {0} {1}\n"
+      "fix             m2 all property/global poissonsRatio peratomtype {2} {2}\n"
+      "fix             m3 all property/global coefficientRestitution peratomtypepair 2 {3} {3} {3} "
+      "{3}\n"
+      "fix             m4 all property/global coefficientFriction peratomtypepair 2 {4} {5} {5} "
+      "{5}\n",
+      modulus, wall, in.particles.poisson_ratio, e, mu, mu_wall);
+}
+
+/// No attraction while particles part, if the scene has none.
+const char* limit(const Specimen& s) { return s.scene.in.contact.tension_cutoff ? " limitForce on" : ""; }
+
+std::string walls(const Specimen& s) {
+  constexpr const char* line =
+      "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}} primitive type 2 {0}plane "
+      "{2}{3}\n";
+  std::string text;
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+    if (s.periodic(axis)) continue;
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s));
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s));
+  }
+  return text + fmt::format(fmt::runtime(line), "xyz"[s.vertical()], "floor", 0.0, limit(s));
+}
+
+std::string in_file(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  std::string text = notes(s, Fluid::at_rest, "# ");
+  text += fmt::format(
+      "# liggghts -in THIS [-var steps N]: reads the pack, tells what is in it, and lets it settle for some steps.\n"
+      "variable        data index {}\nvariable        steps index 200\n"
+      "# no_history is the nearest to the scene's sliding friction; its slip is damped by the restitution, so none "
+      "without\n"
+      "variable        tangential index {}\n\n"
+      "units           si\ndimension       {}\natom_style      granular\natom_modify     map array\nhard_particles  "
+      "yes\nboundary       "
+      "{}\nnewton          off\ncommunicate     single vel yes\nread_data       ${{data}}\n\n"
+      "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n",
+      s.file, in.contact.damping_ratio > 0.0 ? "no_history" : "history", s.flat() ? 2 : 3, boundary_words(s),
+      s.scene.skin);
+  text += material(s);
+  text += fmt::format("pair_style      gran model hertz tangential ${{tangential}}{}\npair_coeff      * *\n", limit(s));
+  text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
+                      s.flat() ? "0 -1 0" : "0 0 -1");
+  if (in.drag.coefficient > 0.0) text += fmt::format("fix             drag all viscous {}\n", in.drag.coefficient);
+  text += walls(s);
+  text += fmt::format("fix             move all {}\n", s.rotation ? "nve/sphere" : "nve");
+  if (s.flat()) text += "fix             plane all enforce2d\n";
+  constexpr const char* report =
+      "print           \"PACK after ${now} steps: ${count} particles, volume ${volume_now} m3, mass ${mass_now} kg, "
+      "largest force on a particle ${force_now} N\"\n";
+  text += fmt::format(
+      "timestep        {0}\n\n"
+      "compute         diameter all property/atom diameter\n"
+      "variable        volume atom PI/6*c_diameter*c_diameter*c_diameter\n"
+      "compute         volume all reduce sum v_volume\n"
+      "variable        force atom sqrt(fx*fx+fy*fy+fz*fz)\n"
+      "compute         strongest all reduce max v_force\n"
+      "variable        now equal step\nvariable        count equal atoms\nvariable        volume_now equal c_volume\n"
+      "variable        mass_now equal mass(all)\nvariable        force_now equal c_strongest\n"
+      "thermo_style    custom step atoms ke c_volume c_strongest\n"
+      "thermo_modify   lost error norm no\nthermo          100\n\n"
+      "run             0\n{1}run             ${{steps}}\n{1}",
+      s.scene.time_step, report);
+  return text;
+}
+
+}  // namespace
+
+Document make(const Specimen& s) {
+  const double density = s.scene.in.particles.density;
+  const bool flat = s.flat();  // its particles are then discs of unit thickness; ours are spheres in a plane
+  Document document;
+  document.sections.push_back({data_head(s, "LIGGGHTS", 2, "Atoms"), [density, flat](Text& out, const Outgoing& p) {
+                                 atom_row(out, p, flat ? 4.0 / 3.0 * p.row.radius * density : density);
+                               }});
+  document.sections.push_back(velocities());
+  document.companion = in_file(s);
+  return document;
+}
+
+}  // namespace packmpi::exporters::liggghts

@@ -1,0 +1,201 @@
+#include "exporters/specimen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "disk/scatter.hpp"
+#include "packmpi/version.hpp"
+
+namespace packmpi::exporters {
+namespace {
+
+constexpr std::int64_t batch_rows = 1 << 14;
+constexpr double volume_quanta = 0x1p32;  // of the largest sphere: exact integer sums of 2^30 particles and more
+
+double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
+
+bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+void check(const pack::ParticleRow& row, double largest) {
+  const bool sound =
+      finite(row.position) && finite(row.velocity) && finite(row.spin) && row.radius > 0.0 && row.radius <= largest;
+  if (!sound) {
+    throw Error(ExitCode::io_failure, fmt::format("particle {} has numbers that cannot be", row.id - 1));
+  }
+}
+
+pack::ParticleRow row_of(const pack::PackRows& rows, std::size_t k) {
+  return {rows.id[k],     rows.position[k], rows.velocity[k], rows.spin.empty() ? Vec3{} : rows.spin[k],
+          rows.radius[k], rows.layer[k],    rows.contacts[k]};
+}
+
+/// What one rank finds.
+struct Found {
+  std::int64_t count = 0, quanta = 0;
+  double top = 0.0, widest = 0.0;
+  Vec3 lowest{}, highest{};
+};
+
+Found look(const comm::Comm& comm, const Selection& selection, const scene::Scene& scene) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const disk::IdBlocks share{selection.places(), comm.size()};
+  const auto up = static_cast<std::size_t>(scene.box.vertical());
+  const double scale = volume_quanta / sphere(scene.sizes.largest());
+  Found found;
+  found.lowest.fill(infinity);
+  found.highest.fill(-infinity);
+  selection.visit(share.begin(comm.rank()), share.begin(comm.rank() + 1), [&](const pack::ParticleRow& row) {
+    check(row, scene.sizes.largest());
+    ++found.count;
+    found.quanta += std::llround(sphere(row.radius) * scale);
+    found.top = std::max(found.top, row.position[up] + row.radius);
+    found.widest = std::max(found.widest, row.radius);
+    for (std::size_t c = 0; c < 3; ++c) {
+      found.lowest[c] = std::min(found.lowest[c], row.position[c]);
+      found.highest[c] = std::max(found.highest[c], row.position[c]);
+    }
+  });
+  return found;
+}
+
+std::string axis_words(const Specimen& s, std::size_t axis) {
+  const char name = "xyz"[axis];
+  if (axis == s.vertical()) return fmt::format("{} from the floor at 0, open above, H_d {}", name, s.size[axis]);
+  return fmt::format("{} 0 to {} {}", name, s.size[axis], s.periodic(axis) ? "periodic" : "between walls");
+}
+
+// A file name may hold anything; a comment line may not.
+std::string printable(std::string words) {
+  for (char& c : words) {
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  }
+  return words;
+}
+
+}  // namespace
+
+bool Selection::kept(const pack::ParticleRow& row) const {
+  const double centre = row.position[static_cast<std::size_t>(box_.vertical())];
+  switch (trim_) {
+    case Trim::drop:
+      return centre + row.radius <= box_.height();
+    case Trim::cut:
+      return centre <= box_.height();
+    case Trim::none:
+      break;
+  }
+  return true;
+}
+
+void Selection::visit_batch(std::int64_t copy, std::int64_t first, std::int64_t count,
+                            const std::function<void(const pack::ParticleRow&)>& take) const {
+  const std::array<std::int64_t, 2> at{copy % copies_[0], copy / copies_[0]};
+  const pack::PackRows rows = file_->rows(first, count);
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    pack::ParticleRow row = row_of(rows, k);
+    if (row.id != first + static_cast<std::int64_t>(k)) {
+      throw Error(ExitCode::io_failure, fmt::format("row {} has the id {}: the pack is damaged",
+                                                    first + static_cast<std::int64_t>(k), row.id));
+    }
+    if (!kept(row)) continue;
+    row.id += copy * file_->count() + 1;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (at[axis] == 0) continue;
+      const double end = box_.size[axis] * copies_[axis];  // rounding must not reach it
+      row.position[axis] =
+          std::min(row.position[axis] + static_cast<double>(at[axis]) * box_.size[axis], std::nextafter(end, 0.0));
+    }
+    take(row);
+  }
+}
+
+void Selection::visit(std::int64_t begin, std::int64_t end,
+                      const std::function<void(const pack::ParticleRow&)>& take) const {
+  const std::int64_t n = file_->count();
+  while (begin < end) {
+    const std::int64_t first = begin % n;
+    const std::int64_t count = std::min({batch_rows, end - begin, n - first});
+    visit_batch(begin / n, first, count, take);
+    begin += count;
+  }
+}
+
+Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Selection& selection,
+                const ConvertRequest& request, const scene::Scene& scene) {
+  Specimen s;
+  Found found;
+  comm::agree_on(comm, [&] {
+    s.pack = printable(std::filesystem::path(request.pack).filename().string());
+    s.file = std::filesystem::path(request.file).filename().string();
+    s.version = file.text("/provenance", "version");
+    s.duration = file.number("/summary", "duration");
+    found = look(comm, selection, scene);
+  });
+  s.scene = scene;
+  s.rotation = file.rotation();
+  s.trim = request.trim;
+  s.copies = request.copies;
+  s.count = comm.sum(found.count);
+  s.volume = static_cast<double>(comm.sum(found.quanta)) * (sphere(scene.sizes.largest()) / volume_quanta);
+  s.size = scene.box.size;
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) s.size[axis] *= request.copies[axis];
+  s.top = comm.max(found.top);
+  s.widest = s.count > 0 ? comm.max(found.widest) : comm.max(1.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double low = comm.min(found.lowest[c]);
+    const double high = comm.max(found.highest[c]);
+    s.lowest[c] = s.count > 0 ? low : 0.0;
+    s.highest[c] = s.count > 0 ? high : 0.0;
+  }
+  return s;
+}
+
+std::array<Extent, 3> inner_box(const Specimen& s) {
+  std::array<Extent, 3> box{};
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) box[axis] = {0.0, s.size[axis]};
+  box[s.vertical()] = {0.0, std::max(s.size[s.vertical()], s.top)};
+  return box;
+}
+
+std::array<Extent, 3> padded_box(const Specimen& s) {
+  std::array<Extent, 3> box = inner_box(s);
+  for (std::size_t axis = 0; axis <= s.vertical(); ++axis) {
+    if (s.periodic(axis)) continue;
+    box[axis].low = std::min(box[axis].low, s.lowest[axis]) - s.widest;
+    box[axis].high = std::max(box[axis].high, s.highest[axis]) + s.widest;
+  }
+  if (s.flat()) box[2] = {-0.5, 0.5};
+  return box;
+}
+
+std::vector<std::string> header_lines(const Specimen& s) {
+  std::string box = "box: " + axis_words(s, 0);
+  for (std::size_t axis = 1; axis <= s.vertical(); ++axis) box += "; " + axis_words(s, axis);
+  std::vector<std::string> lines{
+      fmt::format("packmpi {}: units si (m, kg, s)", version()),
+      fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,
+                  s.flat() ? "spheres in a plane" : "spheres", s.pack, s.version, s.scene.in.seed, s.volume,
+                  s.volume * s.scene.in.particles.density),
+      box};
+  if (s.trim == Trim::drop) lines.emplace_back("trimmed: particles that reach above H_d are left out");
+  if (s.trim == Trim::cut) lines.emplace_back("trimmed: particles with their centre above H_d are left out");
+  if (s.copies[0] * s.copies[1] > 1) {
+    lines.push_back(fmt::format("replicated: {} x {} copies of one periodic pack side by side, no larger random pack",
+                                s.copies[0], s.copies[1]));
+  }
+  return lines;
+}
+
+std::string header(const Specimen& s, std::string_view comment_mark) {
+  std::string text;
+  for (const std::string& line : header_lines(s)) text += fmt::format("{}{}\n", comment_mark, line);
+  return text;
+}
+
+}  // namespace packmpi::exporters

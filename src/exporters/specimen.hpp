@@ -1,0 +1,92 @@
+/// The particles of a pack as another code gets them: trimmed, copied, numbered. Private to this room.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "exporters/convert.hpp"
+#include "pack/pack_file.hpp"
+#include "pack/pack_plan.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::exporters {
+
+/// A particle on its way out. `row.id` counts from 1: row of the pack + 1, plus N for each copy before; ids of trimmed
+/// particles are left out.
+struct Outgoing {
+  pack::ParticleRow row;
+  std::int64_t index;  ///< among those written, from 0
+};
+
+/// The list of outgoing particles, read batch by batch; never whole in memory. Rank-local.
+class Selection {
+ public:
+  Selection(const pack::PackFile& file, const geometry::Box& box, const ConvertRequest& request)
+      : file_(&file), box_(box), trim_(request.trim), copies_(request.copies) {}
+
+  /// Places in the list: particles times copies. Trimmed particles have a place and are passed over.
+  [[nodiscard]] std::int64_t places() const { return file_->count() * copies_[0] * copies_[1]; }
+  [[nodiscard]] bool trims() const { return trim_ != Trim::none; }
+  /// Calls take(row) for the particles of places [begin, end) in turn. Error(io_failure) if the pack is damaged.
+  void visit(std::int64_t begin, std::int64_t end, const std::function<void(const pack::ParticleRow&)>& take) const;
+
+ private:
+  [[nodiscard]] bool kept(const pack::ParticleRow& row) const;
+  void visit_batch(std::int64_t copy, std::int64_t first, std::int64_t count,
+                   const std::function<void(const pack::ParticleRow&)>& take) const;
+
+  const pack::PackFile* file_;
+  geometry::Box box_;
+  Trim trim_;
+  std::array<int, 2> copies_;
+};
+
+/// What writers know beside the particles. The same on all ranks.
+struct Specimen {
+  std::string pack;     ///< file name of the pack, without folder
+  std::string file;     ///< file name of what is written, without folder
+  std::string version;  ///< of the program that made the pack
+  scene::Scene scene;   ///< the pack's own
+  bool rotation = true;
+  double duration = 0.0;  ///< [s] simulated when the pack was made
+  Trim trim = Trim::none;
+  std::array<int, 2> copies{1, 1};
+  std::int64_t count = 0;    ///< particles written
+  double volume = 0.0;       ///< [m3] of them, as spheres; 9 digits
+  Vec3 size{};               ///< [m] lateral extents of all copies, then H_d; z of a 2D pack: 0
+  double top = 0.0;          ///< [m] of the highest particle written
+  double widest = 0.0;       ///< [m] largest radius written; 1 if nothing is
+  Vec3 lowest{}, highest{};  ///< [m] of the centres
+
+  [[nodiscard]] bool flat() const { return scene.box.dimension == 2; }
+  [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.box.vertical()); }
+  /// Of axis x, y or z.
+  [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.box.periodic[axis]; }
+};
+
+/// An interval [m].
+struct Extent {
+  double low, high;
+};
+
+/// The box the particles live in: walls or period, the floor, and above the higher of H_d and the top. z of 2D: 0, 0.
+[[nodiscard]] std::array<Extent, 3> inner_box(const Specimen& specimen);
+/// The same for codes that want every centre strictly inside: walls, floor and top moved outward by a radius or more,
+/// periodic axes as they are. z of 2D: -0.5, 0.5.
+[[nodiscard]] std::array<Extent, 3> padded_box(const Specimen& specimen);
+
+/// What every file says at its head, a line each, without marks of a comment: versions, seed, units, box, and what was
+/// trimmed or copied.
+[[nodiscard]] std::vector<std::string> header_lines(const Specimen& specimen);
+/// The same as text, each line behind `mark`.
+[[nodiscard]] std::string header(const Specimen& specimen, std::string_view mark);
+
+/// Collective. Counts and measures the outgoing particles; this rank looks at its share.
+[[nodiscard]] Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Selection& selection,
+                              const ConvertRequest& request, const scene::Scene& scene);
+
+}  // namespace packmpi::exporters

@@ -1,0 +1,107 @@
+// YADE: text for SpherePack.load, which carries the period, and a script with the scene's law.
+#include <fmt/compile.h>
+
+#include "exporters/document.hpp"
+#include "exporters/law.hpp"
+
+namespace packmpi::exporters::yade {
+namespace {
+
+/// YADE knows cells that are periodic along all axes: where the pack is not, the cell is so large that images are
+/// apart.
+std::string cell(const Specimen& s) {
+  if (!s.scene.features.periodic) return "";
+  constexpr double apart = 8.0;  // largest radii
+  Vec3 size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size[axis] = axis == s.vertical() ? 2.0 * inner_box(s)[axis].high + apart * s.widest
+                 : s.periodic(axis)   ? s.size[axis]
+                                      : s.size[axis] + apart * s.widest;
+  }
+  return fmt::format("##PERIODIC:: {:.17g} {:.17g} {:.17g}\n", size[0], size[1], size[2]);
+}
+
+std::string walls(const Specimen& s) {
+  std::string text = fmt::format("walls = [utils.wall(0, axis={}, sense=1, material='walls')]\n", s.vertical());
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+    if (s.periodic(axis)) continue;
+    text += fmt::format(
+        "walls += [utils.wall(0, axis={0}, sense=1, material='walls'), utils.wall({1}, axis={0}, sense=-1, "
+        "material='walls')]\n",
+        axis, s.size[axis]);
+  }
+  return text;
+}
+
+/// Degrees of freedom that are fixed.
+std::string blocked(const Specimen& s) {
+  const std::string turns = s.flat() ? "XY" : "";
+  return (s.flat() ? "z" : "") + (s.rotation ? turns : "XYZ");
+}
+
+std::string materials(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  const double factor = in.contact.wall == input::WallStiffness::rigid ? 1e5 : 1.0;
+  constexpr const char* line =
+      "O.materials.append(FrictMat(young={}, poisson={}, density={}, frictionAngle=math.atan({}), "
+      "label='{}'))\n";
+  const input::Particles& p = in.particles;
+  return fmt::format(fmt::runtime(line), p.youngs_modulus, p.poisson_ratio, p.density, in.contact.friction,
+                     "particles") +
+         fmt::format(fmt::runtime(line), factor * p.youngs_modulus, p.poisson_ratio, p.density,
+                     in.contact.wall_friction, "walls");
+}
+
+std::string script(const Specimen& s) {
+  const input::Input& in = s.scene.in;
+  const double g = in.jamming.gravity;
+  std::string text = notes(s, Fluid::not_carried, "# ");
+  text += fmt::format(
+      "# not carried over: velocities and spins; the friction here has a history (Mindlin)\n"
+      "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
+      "import math\nimport os\nfrom yade import pack, utils\n\n"
+      "data = os.environ.get('PACK_DATA', {:?})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
+      s.file);
+  text += materials(s);
+  text += fmt::format(
+      "spheres = pack.SpherePack()\nspheres.load(data)\n"
+      "spheres.isPeriodic = {}\n"
+      "ids = list(spheres.toSimulation(material='particles'))\n"
+      "for i in ids:\n    O.bodies[i].state.blockedDOFs = '{}'\n",
+      s.scene.features.periodic ? "True" : "False", blocked(s));
+  text += walls(s) + "O.bodies.append(walls)\n\n";
+  text += fmt::format(
+      "O.engines = [\n    ForceResetter(),\n"
+      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], allowBiggerThanPeriod=True),\n"
+      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],\n"
+      "                    [Ip2_FrictMat_FrictMat_MindlinPhys(betan={0}, betas={0})],\n"
+      "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
+      "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
+      in.contact.damping_ratio, s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g),
+      s.scene.time_step);
+  return text +
+         "def report():\n"
+         "    volume = sum(4 / 3 * math.pi * O.bodies[i].shape.radius ** 3 for i in ids)\n"
+         "    mass = sum(O.bodies[i].state.mass for i in ids)\n"
+         "    force = max((i.phys.normalForce.norm() for i in O.interactions\n"
+         "                 if i.isReal and i.id1 < len(ids) and i.id2 < len(ids)), default=0.0)\n"
+         "    print('PACK after %d steps: %d particles, volume %.17g m3, mass %.17g kg, largest contact force %.17g "
+         "N'\n"
+         "          % (O.iter, len(ids), volume, mass, force), flush=True)\n\n\n"
+         "O.run(1, True)\nreport()\nO.run(steps, True)\nreport()\n";
+}
+
+}  // namespace
+
+Document make(const Specimen& s) {
+  Document document;
+  document.sections.push_back({cell(s), [](Text& out, const Outgoing& p) {
+                                 const Vec3& x = p.row.position;
+                                 fmt::format_to(fmt::appender(out), FMT_COMPILE("{:.17g} {:.17g} {:.17g} {:.17g} -1\n"),
+                                                x[0], x[1], x[2], p.row.radius);
+                               }});
+  document.companion = script(s);
+  return document;
+}
+
+}  // namespace packmpi::exporters::yade

@@ -1,0 +1,321 @@
+#include "forecast/estimate.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "forecast/probe.hpp"
+#include "geometry/columns.hpp"
+#include "geometry/volume.hpp"
+#include "input/units.hpp"
+#include "pack/checkpoint.hpp"
+#include "pack/pack.hpp"
+#include "report/fields.hpp"
+#include "run/record.hpp"
+#include "run/settle.hpp"
+#include "scene/expectation.hpp"
+
+namespace packmpi::forecast {
+namespace {
+
+constexpr double probe_seconds = 1.0;
+constexpr int turns = 3;        // walls and surface make a pile looser: the fraction depends on what is looked for
+constexpr double margin = 0.5;  // of a layer, by which the last one rises above a height that is found
+constexpr double step_row_bytes = 190.0;  // of NAME.steps.csv, about (doc/estimate.md)
+// Memory of a rank (doc/estimate.md): the program and its libraries; what lists add to a particle; slack of arrays
+// that grow; rows on their way to a file.
+constexpr double program_bytes = 51e6;
+constexpr double growth = 1.1;
+constexpr std::array<double, 2> pairs_a_particle{2.7, 3.4};  // listed, of discs, of spheres
+constexpr double pair_bytes = 2.0 * sizeof(LocalIndex);
+constexpr double writing_bytes = 400.0;
+
+[[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_input, "estimate: " + words); }
+
+scene::PileFraction fraction_of(const scene::Scene& scene, const Question& question) {
+  if (question.fraction) return {*question.fraction, 0.0};
+  return scene::expected_fraction(scene);
+}
+
+// So many layers of `particles` particles on the floor of the scene; the layer's thickness is fitted so that whole ones
+// make it.
+struct Fitted {
+  double thickness, height;
+};
+Fitted fit_height(const scene::Scene& scene, double particles, double layers, double fraction) {
+  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const double solid = (particles / layers - margin) * mean;  // of a layer: insertion overshoots by half a particle
+  return {.thickness = solid / (scene.in.layers.fraction * scene.box.floor_area()),
+          .height = (layers - margin) * solid / (fraction * scene.box.floor_area())};
+}
+
+// Area of the floor on which the scene's height takes so many particles.
+double fit_floor(const scene::Scene& scene, double particles, double fraction) {
+  const double layers = static_cast<double>(scene::expected_layers(scene, fraction));
+  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const double a_layer = particles / layers - margin;
+  if (!(a_layer > 0.0)) {
+    refuse(fmt::format("{} particles are less than one for each of {:.0f} layers; lower the height or thicken layers",
+                       particles, layers));
+  }
+  return a_layer * mean / (scene.in.layers.fraction * scene.in.layers.thickness);
+}
+
+std::string list(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : ",", input::number(x));
+  return fmt::format("[{}]", text);
+}
+
+// A scene file and what the command line changes of it.
+struct Source {
+  const std::string& path;
+  const input::Overrides& overrides;
+};
+
+// The scene with these changes of its file.
+scene::Scene changed(const comm::Comm& comm, const Source& source, const std::vector<std::string>& sets) {
+  input::Overrides overrides = source.overrides;
+  overrides.set.insert(overrides.set.end(), sets.begin(), sets.end());
+  return scene::build(input::read(comm, source.path, overrides));
+}
+
+std::string size_key(const std::vector<double>& size) { return "container.size=" + list(size); }
+
+// What is asked for, once it is clear that it is one thing.
+enum class Unknown { particles, height, floor };
+Unknown unknown_of(const Question& question, int lateral_axes) {
+  const auto open = std::ranges::count_if(question.sides, [](const auto& side) { return !side; });
+  if (!question.sides.empty() && std::ssize(question.sides) != lateral_axes) {
+    refuse(fmt::format("--floor: {} side{} given, the scene has {}", question.sides.size(),
+                       question.sides.size() == 1 ? "" : "s", lateral_axes));
+  }
+  if (!question.particles) {
+    if (open > 0) refuse("--floor: an open side is found for a number of particles; give --particles N");
+    return Unknown::particles;
+  }
+  if (open > 0) return Unknown::floor;
+  if (!question.height) return Unknown::height;
+  if (!question.sides.empty()) {
+    refuse("--particles, --height and --floor leave nothing to find; leave one of them out, or a side of --floor open");
+  }
+  return Unknown::floor;
+}
+
+// Lateral sides with the area asked for: the open ones, or all, are scaled alike.
+void scale_floor(const Question& question, double area, std::vector<double>& size) {
+  const std::size_t axes = size.size() - 1;
+  std::vector<std::size_t> open;
+  double now = 1.0;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    now *= size[axis];
+    if (question.sides.empty() || !question.sides[axis]) open.push_back(axis);
+  }
+  const double factor = open.size() == 2 ? std::sqrt(area / now) : area / now;
+  for (const std::size_t axis : open) size[axis] *= factor;
+}
+
+// The scene whose particles, height and floor fit together.
+scene::Scene solved(const comm::Comm& comm, const Source& source, const Question& question, Unknown& unknown) {
+  scene::Scene scene = changed(comm, source, {});
+  std::vector<double> size = scene.in.container.size;
+  unknown = unknown_of(question, scene.box.lateral_axes());
+  if (question.height) size.back() = *question.height;
+  for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
+    size[axis] = question.sides[axis].value_or(size[axis]);
+  if (size != scene.in.container.size) scene = changed(comm, source, {size_key(size)});
+  if (unknown == Unknown::particles) return scene;
+  const auto particles = static_cast<double>(*question.particles);
+  if (unknown == Unknown::floor) {
+    for (int turn = 0; turn < turns; ++turn) {
+      scale_floor(question, fit_floor(scene, particles, fraction_of(scene, question).value), size);
+      scene = changed(comm, source, {size_key(size)});
+    }
+    return scene;
+  }
+  const double layers = std::max(1.0, std::round(particles / static_cast<double>(scene::particles_a_layer(scene))));
+  for (int turn = 0; turn < turns; ++turn) {
+    const Fitted fitted = fit_height(scene, particles, layers, fraction_of(scene, question).value);
+    if (fitted.thickness < 2.0 * scene.sizes.largest()) {
+      refuse(
+          fmt::format("{} particles are less than a layer on this floor; make the floor smaller (--floor)", particles));
+    }
+    size.back() = fitted.height;
+    scene = changed(comm, source, {size_key(size), "layers.thickness=" + input::number(fitted.thickness)});
+  }
+  return scene;
+}
+
+// Ranks the decomposition has columns for, and the share of copies a rank of `ranks` holds beside its own particles.
+int ranks_at_most(const scene::Scene& scene) {
+  const auto [nx, ny] = geometry::ColumnGrid(scene.box, scene.column_width()).counts();
+  const bool slab = scene.in.parallel.decomposition == input::Decomposition::slab;
+  if (slab && scene.box.dimension == 3) return scene.box.size[1] > scene.box.size[0] ? ny : nx;
+  return static_cast<int>(std::min<std::int64_t>(std::int64_t{nx} * ny, 1 << 30));
+}
+
+double ghost_share(const scene::Scene& scene, int ranks) {
+  const auto side = [&](std::size_t axis, int parts) {  // copies along one axis, by the part's own width
+    if (parts == 1) return 0.0;
+    const double faces = parts == 2 && !scene.box.periodic[axis] ? 1.0 : 2.0;
+    return std::min(1.0 * (parts - 1), faces * scene.column_width() * parts / scene.box.size[axis]);
+  };
+  const std::size_t longer = scene.box.dimension == 3 && scene.box.size[1] > scene.box.size[0] ? 1 : 0;
+  if (scene.in.parallel.decomposition == input::Decomposition::slab || scene.box.dimension == 2)
+    return side(longer, ranks);
+  double least = side(longer, ranks);
+  for (int parts = 2; parts < ranks; ++parts) {
+    if (ranks % parts != 0) continue;
+    const double x = side(longer, parts);
+    const double y = side(1 - longer, ranks / parts);
+    least = std::min(least, (1.0 + x) * (1.0 + y) - 1.0);
+  }
+  return least;
+}
+
+// Bytes of a particle on its rank, and of a copy.
+double own_bytes(const scene::Scene& scene) {
+  const particles::Layout layout = scene.features.layout();
+  const int axes = scene.box.dimension;
+  const double stored = static_cast<double>(layout.record_bytes()) + sizeof(GlobalId);
+  const double remembered = sizeof(double) * (axes + (scene.features.graded ? 1.0 : 0.0));
+  return growth * stored + remembered;
+}
+double list_bytes(const scene::Scene& scene) {
+  return growth * pair_bytes * pairs_a_particle[static_cast<std::size_t>(scene.box.dimension - 2)];
+}
+
+// A row as a run writes it: its numbers have all their digits.
+report::LayerRow some_row() {
+  constexpr double digits = 0.12345678901234567;
+  return {.inserted = 1000,
+          .total = 1000,
+          .attempts = 1000,
+          .fraction_asked = 0.25,
+          .fraction_got = digits,
+          .region_bottom = digits,
+          .height = digits,
+          .top = digits,
+          .duration = digits,
+          .steps = 1000,
+          .kinetic_per_mgd = digits,
+          .max_overlap = digits,
+          .coordination = digits,
+          .stop_reason = "duration"};
+}
+
+void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estimate& e) {
+  const auto rows = static_cast<std::size_t>(e.layers.value);
+  report::RunRecord record = run::asked(comm, scene);
+  record.stop_reason = "height";
+  record.layers.assign(rows, some_row());
+  std::optional<std::int64_t> contacts;
+  if (scene.in.output.contacts) {
+    const double touching = scene.box.dimension == 3 ? 5.2 : 4.5;  // of a particle
+    contacts = std::llround(0.5 * touching * static_cast<double>(e.particles.value));
+  }
+  e.pack_bytes = pack::pack_bytes(record, scene.in.dynamics.rotation, e.particles.value, contacts);
+  pack::RunState state;
+  state.effective_input = scene.in.effective;
+  state.version = record.version;
+  state.git = record.git;
+  state.dimension = record.dimension;
+  state.rotation = scene.in.dynamics.rotation;
+  state.count = e.particles.value;
+  state.layers = record.layers;
+  state.row = some_row();
+  for (std::int64_t layer = 0; layer < e.layers.value; ++layer) state.first_ids.push_back(layer * e.a_layer);
+  e.checkpoint_bytes = pack::checkpoint_bytes(scene.features.layout(), state);
+  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.settling.time_step;
+  e.step_log_bytes = std::llround(step_row_bytes * std::max(1.0, e.duration / interval));
+}
+
+void add_counts(const scene::Scene& scene, const scene::PileFraction& fraction, report::Estimate& e) {
+  const auto layers = [&](double shift) {
+    return scene::expected_layers(scene, std::clamp(fraction.value + shift, 1e-3, 1.0));
+  };
+  e.a_layer = scene::particles_a_layer(scene);
+  e.layers = {layers(0.0), layers(-fraction.error), layers(fraction.error)};
+  const auto by_chance = [&](std::int64_t count) {  // two standard deviations
+    return std::llround(2.0 * scene::deviation_of_count(scene, static_cast<double>(count)));
+  };
+  e.particles = {e.layers.value * e.a_layer, e.layers.least * e.a_layer, e.layers.most * e.a_layer};
+  e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least));
+  e.particles.most += by_chance(e.particles.most);
+  e.height = static_cast<double>(e.layers.value) * scene::rise_of_layer(scene, fraction.value);
+}
+
+void add_steps(const scene::Scene& scene, report::Estimate& e) {
+  const std::int64_t layer = run::steps_of(scene, run::Part::layer);
+  e.thaw_steps = scene.thaw > 0.0 ? run::steps_of(scene, run::Part::thaw) : 0;
+  e.steps = e.layers.value * layer + e.thaw_steps;
+  e.duration = static_cast<double>(e.layers.value * layer) * scene.settling.time_step +
+               static_cast<double>(e.thaw_steps) * scene.time_step;
+  e.particle_steps = particle_steps_of(scene, e.layers.value, e.a_layer);
+  e.at_most = scene.in.dynamics.stop == input::StopRule::settled;
+}
+
+void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
+  e.ranks = ranks;
+  e.most_ranks = ranks_at_most(scene);
+  if (e.ranks > e.most_ranks) {
+    refuse(fmt::format("--ranks {}: the columns of this scene are enough for {} ranks", e.ranks, e.most_ranks));
+  }
+  e.ghosts = ghost_share(scene, ranks);
+  const double own = static_cast<double>(e.particles.value) / ranks;
+  const double settling = program_bytes + own * ((1.0 + e.ghosts) * own_bytes(scene) + list_bytes(scene));
+  e.settling_bytes = std::llround(settling);
+  e.writing_bytes = std::llround(settling + writing_bytes * own);
+}
+
+void add_probe(const comm::Comm& comm, const scene::Scene& scene, report::Estimate& e) {
+  report::Probe got;
+  comm::agree_on(comm, [&] { got = probe(scene, probe_seconds); });
+  got.particle_steps_per_second = comm.min(got.particle_steps_per_second);
+  got.insertions_per_second = comm.min(got.insertions_per_second);
+  e.probe = got;
+  e.seconds = static_cast<double>(e.particle_steps) / (got.particle_steps_per_second * e.ranks) +
+              static_cast<double>(e.particles.value) / (got.insertions_per_second * e.ranks);
+}
+
+}  // namespace
+
+std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, std::int64_t a_layer) {
+  const std::int64_t window = scene.in.dynamics.window;
+  const std::int64_t growing = window > 0 ? std::min(layers, window) : layers;  // layers in which more and more move
+  const std::int64_t moved = growing * (growing + 1) / 2 + growing * (layers - growing);
+  const std::int64_t thaw = scene.thaw > 0.0 ? layers * run::steps_of(scene, run::Part::thaw) : 0;
+  return a_layer * (moved * run::steps_of(scene, run::Part::layer) + thaw);
+}
+
+report::Estimate estimate(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides,
+                          const Question& question) {
+  Unknown unknown{};
+  const scene::Scene scene = solved(comm, {path, overrides}, question, unknown);
+  constexpr std::array<const char*, 3> names{"particles", "height", "floor"};
+  const scene::PileFraction fraction = fraction_of(scene, question);
+  report::Estimate e;
+  e.scene_file = path;
+  e.found = names.at(static_cast<std::size_t>(unknown));
+  e.size = scene.in.container.size;
+  e.layer_thickness = scene.in.layers.thickness;
+  e.thickness_changed = unknown == Unknown::height;
+  e.fraction = fraction.value;
+  e.fraction_error = fraction.error;
+  e.fraction_given = question.fraction.has_value();
+  add_counts(scene, fraction, e);
+  add_steps(scene, e);
+  add_ranks(scene, question.ranks > 0 ? question.ranks : comm.size(), e);
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) add_files(comm, scene, e);
+  });
+  std::array<std::int64_t, 3> bytes{e.pack_bytes, e.checkpoint_bytes, e.step_log_bytes};
+  comm.max(bytes);
+  e.pack_bytes = bytes[0], e.checkpoint_bytes = bytes[1], e.step_log_bytes = bytes[2];
+  if (question.probe) add_probe(comm, scene, e);
+  return e;
+}
+
+}  // namespace packmpi::forecast

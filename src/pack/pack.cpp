@@ -1,0 +1,29 @@
+#include "pack/pack.hpp"
+
+#include <vector>
+
+#include "disk/whole_file.hpp"
+#include "pack/pack_plan.hpp"
+
+namespace packmpi::pack {
+
+void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
+                const report::RunRecord& record) {
+  const disk::h5::Quiet quiet;
+  const PackBlock block = make_block(comm, parts);
+  const std::vector<disk::h5::Column> plan = plan_columns(block);
+  disk::write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, block, plan, record); });
+}
+
+std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,
+                        std::optional<std::int64_t> contacts) {
+  PackBlock block;
+  block.rotation = rotation;
+  block.particles = {static_cast<hsize_t>(particles), 0, 0};
+  block.has_contacts = contacts.has_value();
+  block.contacts = {static_cast<hsize_t>(contacts.value_or(0)), 0, 0};
+  const std::vector<disk::h5::Column> plan = plan_columns(block);
+  return disk::whole_file_bytes(plan, [&](hid_t file) { write_frame(file, block, plan, record); });
+}
+
+}  // namespace packmpi::pack

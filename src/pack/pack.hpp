@@ -1,0 +1,66 @@
+/// The pack file: what is in it, writing and reading (design: doc/file_format.md).
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "observe/measure.hpp"
+#include "particles/store.hpp"
+#include "report/record.hpp"
+
+namespace packmpi::pack {
+
+/// One contact for /contacts.
+using ContactRow = observe::ContactForce;
+
+/// What this rank contributes to a pack.
+struct PackParts {
+  const particles::Store* store = nullptr;  ///< owned particles; ids over all ranks are 0 .. N-1 without gap
+  std::span<const std::int32_t> layer;      ///< of the owned, in slot order
+  std::span<const std::int32_t> contacts;   ///< touching particles of the owned, in slot order
+  const std::vector<ContactRow>* contact_rows = nullptr;  ///< none: no /contacts; on all ranks or on none
+};
+
+/// Collective. Writes PATH (NAME.hdf): to PATH.tmp, flushed, fsync'ed, renamed. Rows sorted by id whatever the ranks;
+/// nothing is gathered. Throws on every rank: Error(io_failure) with the reason (full disk, permissions), or
+/// Error(numerical_failure) if the ids are not 0 .. N-1; then PATH is untouched and PATH.tmp is gone.
+/// Memory: about 200 bytes a particle of this rank's share, for the time of the call.
+void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
+                const report::RunRecord& record);
+
+/// Bytes of the file that write_pack() would write of so many particles and contacts (none: no /contacts). Rank-local.
+/// Throws Error(io_failure).
+[[nodiscard]] std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,
+                                      std::optional<std::int64_t> contacts);
+
+/// Rows of a pack, sorted by id.
+struct PackRows {
+  int dimension = 3;
+  std::vector<GlobalId> id;
+  std::vector<Vec3> position, velocity, spin;  ///< spin empty if absent
+  std::vector<double> radius;
+  std::vector<std::int32_t> layer, contacts;
+};
+/// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure), also if any of it is
+/// not what was written.
+[[nodiscard]] PackRows read_pack(const std::string& path);
+
+/// Collective. Throws Error(io_failure) unless every byte of the pack is as it was written. Cost: one reading of it
+/// all, shared by the ranks.
+void check_pack(const comm::Comm& comm, const std::string& path);
+
+/// One rank's share of a pack, and the scene it was made from.
+struct PackSlice {
+  PackRows rows;      ///< [rank N / ranks, (rank + 1) N / ranks)
+  std::string scene;  ///< the effective input, TOML
+};
+/// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
+[[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
+
+/// Rank-local. Whether PATH is a pack, sound or not, rather than another file.
+[[nodiscard]] bool is_pack(const std::string& path);
+
+}  // namespace packmpi::pack

@@ -1,0 +1,37 @@
+/// A pack file, open for reading in slices. Private to this room.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "disk/hdf5.hpp"
+#include "disk/seal.hpp"
+#include "pack/pack.hpp"
+
+namespace packmpi::pack {
+
+/// Rank-local; several ranks may each have the same file open. Errors: Error(io_failure), HDF5's words without the
+/// path.
+class PackFile {
+ public:
+  /// Opens it, once all but its rows is known to be what was written; checks the format version and the shape of
+  /// /particles/id. Whoever reads rows calls check_rows() with seal() before.
+  explicit PackFile(const std::string& path);
+
+  [[nodiscard]] const disk::Seal& seal() const noexcept { return seal_; }
+  [[nodiscard]] int dimension() const noexcept { return dimension_; }
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }  ///< particles
+  [[nodiscard]] bool rotation() const noexcept { return rotation_; }    ///< spins are there
+  /// Rows [begin, begin + count) of all particle datasets, whose shapes are checked. Cost: O(count).
+  [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
+  [[nodiscard]] std::string text(const char* object, const char* attribute) const;
+  [[nodiscard]] double number(const char* object, const char* attribute) const;
+
+ private:
+  disk::Seal seal_;
+  disk::h5::Handle file_;
+  int dimension_ = 3;
+  std::int64_t count_ = 0;
+  bool rotation_ = false;
+};
+
+}  // namespace packmpi::pack

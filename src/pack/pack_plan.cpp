@@ -1,0 +1,177 @@
+#include "pack/pack_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "disk/scatter.hpp"
+#include "report/fields.hpp"
+
+namespace packmpi::pack {
+namespace {
+
+std::vector<ParticleRow> rows_here(const PackParts& parts) {
+  const particles::Store& store = *parts.store;
+  std::vector<ParticleRow> rows(static_cast<std::size_t>(store.owned()));
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    rows[k] = {store.ids()[k],  store.position(i), store.velocity(i), store.spin(i),
+               store.radius(i), parts.layer[k],    parts.contacts[k]};
+  }
+  return rows;
+}
+
+[[noreturn]] void fail_ids(std::int64_t total, std::string_view what, GlobalId id) {
+  throw Error(ExitCode::numerical_failure,
+              fmt::format("the ids of the {} particles are not 0 .. {}: {} {}", total, total - 1, id, what));
+}
+
+void check_range(const std::vector<ParticleRow>& rows, std::int64_t total) {
+  for (const ParticleRow& row : rows) {
+    if (row.id < 0 || row.id >= total) fail_ids(total, "is out of range", row.id);
+  }
+}
+
+void check_complete(const std::vector<ParticleRow>& rows, GlobalId begin, GlobalId end, std::int64_t total) {
+  GlobalId expected = begin;
+  for (const ParticleRow& row : rows) {
+    if (row.id < expected) fail_ids(total, "is there twice", row.id);
+    if (row.id > expected) fail_ids(total, "is missing", expected);
+    ++expected;
+  }
+  if (expected < end) fail_ids(total, "is missing", expected);
+}
+
+disk::h5::Slab slab_of(const comm::Comm& comm, std::size_t count) {
+  const auto mine = static_cast<std::int64_t>(count);
+  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), count};
+}
+
+void add_particles(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
+  const auto& rows = block.rows;
+  const disk::h5::Slab& slab = block.particles;
+  using Row = ParticleRow;
+  plan.push_back(
+      disk::h5::make_column<std::int64_t>("/particles/id", "", slab, rows, [](const Row& r) { return r.id; }));
+  plan.push_back(
+      disk::h5::make_column<double>("/particles/position", "m", slab, rows, [](const Row& r) { return r.position; }));
+  plan.push_back(
+      disk::h5::make_column<double>("/particles/radius", "m", slab, rows, [](const Row& r) { return r.radius; }));
+  plan.push_back(
+      disk::h5::make_column<double>("/particles/velocity", "m/s", slab, rows, [](const Row& r) { return r.velocity; }));
+  if (block.rotation) {
+    plan.push_back(
+        disk::h5::make_column<double>("/particles/spin", "rad/s", slab, rows, [](const Row& r) { return r.spin; }));
+  }
+  plan.push_back(
+      disk::h5::make_column<std::int32_t>("/particles/layer", "", slab, rows, [](const Row& r) { return r.layer; }));
+  plan.push_back(disk::h5::make_column<std::int32_t>("/particles/contacts", "", slab, rows,
+                                                     [](const Row& r) { return r.contacts; }));
+}
+
+void add_contacts(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
+  const auto& rows = block.contact_rows;
+  const disk::h5::Slab& slab = block.contacts;
+  using Row = ContactRow;
+  plan.push_back(disk::h5::make_column<std::int64_t>("/contacts/pair", "", slab, rows, [](const Row& r) {
+    return std::array<std::int64_t, 2>{r.first, r.second};
+  }));
+  plan.push_back(
+      disk::h5::make_column<double>("/contacts/overlap", "m", slab, rows, [](const Row& r) { return r.overlap; }));
+  plan.push_back(
+      disk::h5::make_column<double>("/contacts/force", "N", slab, rows, [](const Row& r) { return r.force; }));
+}
+
+/// VTKHDF 1.0, UnstructuredGrid: one cell, a poly-vertex of all particles, from the datasets that are there.
+void write_view(hid_t file, const PackBlock& block) {
+  constexpr std::uint8_t poly_vertex = 2;
+  using Numbers = std::vector<std::int64_t>;
+  const auto total = static_cast<std::int64_t>(block.particles.total);
+  const disk::h5::Handle view = disk::h5::create_group(file, "/VTKHDF");
+  disk::h5::set_attribute(view.get(), "Version", Numbers{1, 0});
+  disk::h5::set_fixed_attribute(view.get(), "Type", "UnstructuredGrid");
+  disk::h5::write_small(file, "/VTKHDF/NumberOfPoints", "", Numbers{total});
+  disk::h5::write_small(file, "/VTKHDF/NumberOfCells", "", Numbers{1});
+  disk::h5::write_small(file, "/VTKHDF/NumberOfConnectivityIds", "", Numbers{total});
+  disk::h5::write_small(file, "/VTKHDF/Offsets", "", Numbers{0, total});
+  disk::h5::write_small(file, "/VTKHDF/Types", "", std::vector<std::uint8_t>{poly_vertex});
+  disk::h5::hard_link(file, "/particles/position", "/VTKHDF/Points");
+  disk::h5::hard_link(file, "/particles/id", "/VTKHDF/Connectivity");  // row k is particle k, so the ids are 0 .. N-1
+  (void)disk::h5::create_group(file, "/VTKHDF/PointData");
+  std::vector<std::string> names{"id", "radius", "velocity", "layer", "contacts"};
+  if (block.rotation) names.emplace_back("spin");
+  for (const std::string& name : names) disk::h5::hard_link(file, "/particles/" + name, "/VTKHDF/PointData/" + name);
+}
+
+/// "name: unit; ..." for attributes, which cannot have attributes of their own.
+std::string list_units(const std::vector<disk::Field>& fields) {
+  std::string text;
+  for (const disk::Field& field : fields) {
+    if (field.unit[0] != '\0') text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", field.name, field.unit);
+  }
+  return text;
+}
+
+void write_summary(hid_t file, const report::RunRecord& record) {
+  const disk::h5::Handle group = disk::h5::create_group(file, "/summary");
+  std::vector<disk::Field> fields = report::asked_fields(record);
+  for (disk::Field& field : report::got_fields(record)) fields.push_back(std::move(field));
+  disk::h5::set_attributes(group.get(), fields);
+  disk::h5::set_attribute(group.get(), "units", list_units(fields));
+  disk::h5::set_attributes(disk::h5::create_group(file, "/summary/audit").get(), report::audit_fields(record.audit));
+  (void)disk::h5::create_group(file, "/summary/layers");
+  for (const report::LayerColumn& column : report::layer_columns(record.layers)) {
+    std::visit(
+        [&](const auto& values) {
+          disk::h5::write_small(file, std::string("/summary/layers/") + column.name, column.unit, values);
+        },
+        column.values);
+  }
+}
+
+}  // namespace
+
+PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
+  PackBlock block;
+  block.rotation = parts.store->layout().rotation;
+  const std::int64_t total = comm.sum(std::int64_t{parts.store->owned()});
+  std::vector<ParticleRow> rows = rows_here(parts);
+  comm::agree_on(comm, [&] { check_range(rows, total); });
+
+  const disk::IdBlocks blocks{total, comm.size()};
+  block.rows = scatter(comm, blocks, std::move(rows), &ParticleRow::id);
+  comm::agree_on(comm,
+                 [&] { check_complete(block.rows, blocks.begin(comm.rank()), blocks.begin(comm.rank() + 1), total); });
+  block.particles = slab_of(comm, block.rows.size());
+
+  block.has_contacts = parts.contact_rows != nullptr;
+  if (block.has_contacts) {
+    block.contact_rows = scatter(comm, blocks, *parts.contact_rows, &ContactRow::first);
+    std::sort(block.contact_rows.begin(), block.contact_rows.end(),
+              [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
+    block.contacts = slab_of(comm, block.contact_rows.size());
+  }
+  return block;
+}
+
+std::vector<disk::h5::Column> plan_columns(const PackBlock& block) {
+  std::vector<disk::h5::Column> plan;
+  add_particles(block, plan);
+  if (block.has_contacts) add_contacts(block, plan);
+  return plan;
+}
+
+void write_frame(hid_t file, const PackBlock& block, const std::vector<disk::h5::Column>& plan,
+                 const report::RunRecord& record) {
+  disk::h5::set_attribute(file, "format", std::string("packmpi-pack"));
+  disk::h5::set_attribute(file, "format_version", std::int64_t{1});
+  (void)disk::h5::create_group(file, "/particles");
+  if (block.has_contacts) (void)disk::h5::create_group(file, "/contacts");
+  for (const disk::h5::Column& column : plan) disk::h5::create_dataset(file, column);
+  write_summary(file, record);
+  disk::h5::set_attributes(disk::h5::create_group(file, "/provenance").get(), report::provenance_fields(record));
+  write_view(file, block);
+}
+
+}  // namespace packmpi::pack

@@ -1,0 +1,41 @@
+/// What goes into a pack file: the datasets, from rows that are already where they belong. Private to this room.
+#pragma once
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "disk/hdf5.hpp"
+#include "pack/pack.hpp"
+#include "report/record.hpp"
+
+namespace packmpi::pack {
+
+/// One particle on its way to the file.
+struct ParticleRow {
+  GlobalId id;
+  Vec3 position, velocity, spin;
+  double radius;
+  std::int32_t layer, contacts;
+};
+
+/// This rank's block of the file.
+struct PackBlock {
+  bool rotation = true;
+  disk::h5::Slab particles{};
+  std::vector<ParticleRow> rows;  // by id, without gap
+  bool has_contacts = false;
+  disk::h5::Slab contacts{};
+  std::vector<ContactRow> contact_rows;  // by (first, second)
+};
+
+/// Collective. Brings every row to the rank that writes it, by id. Throws Error(numerical_failure) on every rank if the
+/// ids are not 0 .. N-1.
+[[nodiscard]] PackBlock make_block(const comm::Comm& comm, const PackParts& parts);
+
+/// The datasets that all ranks write. `block` must outlive the plan.
+[[nodiscard]] std::vector<disk::h5::Column> plan_columns(const PackBlock& block);
+
+/// Everything of the file but the rows of `plan`: groups, attributes, small tables, links. Rank-local (rank 0).
+void write_frame(hid_t file, const PackBlock& block, const std::vector<disk::h5::Column>& plan,
+                 const report::RunRecord& record);
+
+}  // namespace packmpi::pack

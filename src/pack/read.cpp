@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "disk/scatter.hpp"
+#include "disk/seal.hpp"
+#include "pack/pack_file.hpp"
+
+namespace packmpi::pack {
+namespace {
+
+/// Whether the beginning of a damaged file names this format and not the other.
+bool looks_like_pack(const std::string& path) {
+  constexpr std::size_t look = 65536;
+  std::string begin(look, '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.find("packmpi-pack") != std::string::npos && begin.find("packmpi-checkpoint") == std::string::npos;
+}
+
+}  // namespace
+
+bool is_pack(const std::string& path) {
+  try {
+    (void)disk::check_frame(path);
+  } catch (const Error&) {  // nothing for HDF5 to open
+    return looks_like_pack(path);
+  }
+  const disk::h5::Quiet quiet;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return false;
+  const bool pack = H5Lexists(file, "/summary", H5P_DEFAULT) > 0;
+  H5Fclose(file);
+  return pack;
+}
+
+namespace {
+
+// The path belongs to every complaint.
+template <class Read>
+auto told(const std::string& path, Read&& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("cannot read {}: {}", path, error.what()));
+  }
+}
+
+template <class Read>
+auto read_from(const std::string& path, Read&& read) {
+  const disk::h5::Quiet quiet;
+  return told(path, [&] { return read(PackFile(path)); });
+}
+
+}  // namespace
+
+PackRows read_pack(const std::string& path) {
+  return read_from(path, [&](const PackFile& file) {
+    disk::check_rows(file.seal(), disk::row_digests(path, file.seal(), 0, 1));
+    return file.rows(0, file.count());
+  });
+}
+
+void check_pack(const comm::Comm& comm, const std::string& path) {
+  std::vector<std::int64_t> digests;
+  disk::Seal seal;
+  comm::agree_on(comm, [&] {
+    seal = told(path, [&] { return disk::check_frame(path); });
+    digests = told(path, [&] { return disk::row_digests(path, seal, comm.rank(), comm.size()); });
+  });
+  comm.sum(std::span(digests));
+  comm::agree_on(comm, [&] { told(path, [&] { disk::check_rows(seal, digests); }); });
+}
+
+PackSlice read_slice(const std::string& path, Rank rank, int ranks) {
+  return read_from(path, [&](const PackFile& file) {
+    const disk::IdBlocks share{file.count(), ranks};
+    const std::int64_t begin = share.begin(rank);
+    return PackSlice{file.rows(begin, share.begin(rank + 1) - begin), file.text("/provenance", "effective_input")};
+  });
+}
+
+}  // namespace packmpi::pack

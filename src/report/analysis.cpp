@@ -1,0 +1,123 @@
+#include "report/analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "report/size_words.hpp"
+
+namespace packmpi::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json profile(const observe::Profile& p) { return {{"from", p.from}, {"width", p.width}, {"values", p.values}}; }
+
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+
+Json density(const observe::Analysis& a) {
+  Json all = Json::object();
+  for (std::size_t k = 0; k < a.density.size(); ++k) all[axis_names.at(k)] = profile(a.density[k]);
+  return all;
+}
+
+Json order(const observe::Order& o, int dimension) {
+  Json json{{"counted", o.counted}};
+  if (dimension == 2) {
+    json["psi6"] = o.psi6;
+    json["psi6_together"] = o.psi6_together;
+  } else {
+    json["q4"] = o.q4;
+    json["q6"] = o.q6;
+    json["fcc"] = o.fcc;
+    json["hcp"] = o.hcp;
+    json["disordered"] = 1.0 - o.fcc - o.hcp;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const observe::Analysis& a, int dimension) {
+  Json root;
+  root["format"] = "packmpi-analysis";
+  root["format_version"] = 1;
+  root["particles"] = a.particles;
+  root["mean_diameter"] = a.mean_diameter;
+  root["sizes"] = to_json(a.sizes);
+  root["density_profile"] = density(a);
+  root["local_density"] = {{"counted", a.local.counted},
+                           {"left_out", a.local.left_out},
+                           {"mean", a.local.mean},
+                           {"sd", a.local.sd},
+                           {"distribution", profile(a.local.distribution)}};
+  root["contacts"] = {{"coordination", a.network.coordination},
+                      {"loose", a.network.loose},
+                      {"rattlers", a.network.rattlers},
+                      {"held_coordination", a.network.held_coordination}};
+  root["forces"] = {{"contacts", a.forces.contacts},
+                    {"mean_normal_force", a.forces.mean_normal_force},
+                    {"fabric", a.forces.fabric},
+                    {"stress", a.forces.stress},
+                    {"distribution", profile(a.forces.distribution)},
+                    {"floor_force", a.floor_force},
+                    {"weight", a.weight}};
+  root["pair_distribution"] = {{"centres", a.pairs.centres}, {"g", profile(a.pairs.g)}};
+  root["order"] = order(a.order, dimension);
+  root["segregation"] = {{"correlation", a.segregation.correlation},
+                         {"mean_radius", profile(a.segregation.mean_radius)}};
+  root["units"] = {{"mean_diameter", "m"},
+                   {"density_profile", "m"},
+                   {"mean_normal_force", "N"},
+                   {"stress", dimension == 3 ? "Pa" : "N/m"},
+                   {"floor_force", "N"},
+                   {"weight", "N"},
+                   {"mean_radius", "m"},
+                   {"g", "mean diameters"},
+                   {"d10", "m"},
+                   {"d30", "m"},
+                   {"d50", "m"},
+                   {"d60", "m"},
+                   {"d90", "m"}};
+  return root.dump(2) + "\n";
+}
+
+std::string to_table(const observe::Analysis& a, int dimension) {
+  fmt::memory_buffer out;
+  const auto line = [&](std::string_view what, double value) {
+    fmt::format_to(std::back_inserter(out), "  {:<58} {:>12.5g}\n", what, value);
+  };
+  fmt::format_to(std::back_inserter(out), "  {:<58} {:>12}\n", "particles", a.particles);
+  line("coordination number", a.network.coordination);
+  line("share with too few contacts", a.network.loose);
+  line("rattlers, recursively", a.network.rattlers);
+  line("coordination number without rattlers", a.network.held_coordination);
+  line("local solid fraction in the bulk, mean", a.local.mean);
+  line("local solid fraction in the bulk, standard deviation", a.local.sd);
+  line("force on the floor / weight", a.weight > 0.0 ? a.floor_force / a.weight : 0.0);
+  line("mean normal force in the bulk [N]", a.forces.mean_normal_force);
+  const auto v = static_cast<std::size_t>(dimension - 1);
+  line(dimension == 3 ? "vertical stress in the bulk [Pa]" : "vertical stress in the bulk [N/m]",
+       a.forces.stress[v][v]);
+  line("lateral over vertical stress",
+       a.forces.stress[v][v] > 0.0 ? a.forces.stress[0][0] / a.forces.stress[v][v] : 0.0);
+  line("share of the vertical in the fabric", a.forces.fabric[v][v]);
+  if (dimension == 2) {
+    line("|psi_6| of a particle, mean", a.order.psi6);
+    line("|psi_6| of all together", a.order.psi6_together);
+  } else {
+    line("q_4, mean", a.order.q4);
+    line("q_6, mean", a.order.q6);
+    line("fcc, share", a.order.fcc);
+    line("hcp, share", a.order.hcp);
+  }
+  line("correlation of radius and height", a.segregation.correlation);
+  fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", "sizes", "asked", "got");
+  for (const SizeLine& size : size_lines(a.sizes)) {
+    fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", size.quantity, size.asked, size.got);
+  }
+  return fmt::to_string(out);
+}
+
+}  // namespace packmpi::report

@@ -1,0 +1,101 @@
+/// What a run reports about itself: asked versus got, per layer and in all; written to the pack, NAME.json and the
+/// screen.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "observe/size_match.hpp"
+
+namespace packmpi::report {
+
+/// One row of the per-layer table.
+struct LayerRow {
+  std::int64_t inserted = 0;    ///< particles
+  std::int64_t total = 0;       ///< particles after it
+  std::int64_t attempts = 0;    ///< darts thrown
+  double fraction_asked = 0.0;  ///< phi_0
+  double fraction_got = 0.0;    ///< solid volume inserted / region volume
+  double region_bottom = 0.0;   ///< [m] T
+  double height = 0.0;          ///< [m] after settling, by the scene's height rule
+  double top = 0.0;             ///< [m] highest particle top
+  double duration = 0.0;        ///< [s] simulated
+  std::int64_t steps = 0;
+  double kinetic_per_mgd = 0.0;  ///< mean kinetic energy / (m g d) of a mean particle at the end of the layer
+  double max_overlap = 0.0;      ///< largest overlap / smaller radius
+  double coordination = 0.0;     ///< mean touching particles
+  std::string stop_reason;       ///< "duration", "settled"
+};
+
+/// The final audit: what must be true of a pack.
+struct Audit {
+  std::int64_t expected = 0, found = 0;  ///< particles; lost = expected - found
+  std::int64_t non_finite = 0;
+  double worst_overlap = 0.0;           ///< overlap / smaller radius
+  double worst_wall_penetration = 0.0;  ///< penetration / radius
+  std::int64_t outside = 0;             ///< centres outside the container
+};
+
+/// A number that every rank has its own of, rank after rank.
+struct RankNumbers {
+  std::string name, unit;  ///< "" for counts
+  std::vector<std::int64_t> of_rank;
+
+  [[nodiscard]] std::int64_t sum() const;
+  [[nodiscard]] std::int64_t max() const;  ///< 0 if there are none
+  [[nodiscard]] double imbalance() const;  ///< max / mean; 1 if all are 0
+};
+
+/// Everything about a run but its particles. Quantities marked (*) are the same on any number of ranks.
+struct RunRecord {
+  // asked
+  std::string name, scene_file, effective_input;
+  std::uint64_t seed = 0;
+  int dimension = 3;
+  Vec3 size{};                  ///< [m] container
+  double height_asked = 0.0;    ///< [m] H_d
+  double fraction_asked = 0.0;  ///< phi_0 of each insertion
+  double mean_radius_asked = 0.0, sd_radius_asked = 0.0, min_radius_asked = 0.0, max_radius_asked = 0.0;  ///< [m]
+  // got (*)
+  std::int64_t particles = 0;
+  double height = 0.0, top = 0.0;  ///< [m]
+  double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
+  double phi_bulk = 0.0;           ///< solid fraction between 0.2 H_d and 0.8 H_d
+  double creep = 0.0;              ///< d phi_bulk / dt at the end [1/s]
+  double coordination = 0.0;       ///< mean touching particles
+  double rattlers = 0.0;           ///< share of particles with fewer than dimension + 1 contacts
+  double mean_overlap = 0.0;       ///< mean over contacts of overlap / smaller radius
+  double kinetic_energy = 0.0;     ///< [J]
+  double floor_force = 0.0;        ///< [N]
+  double weight = 0.0;             ///< [N] m g of all particles
+  double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
+  observe::SizeMatches sizes;                                                     ///< with what was asked
+  double time_step = 0.0;                                                         ///< [s]
+  std::int64_t steps = 0;
+  double duration = 0.0;  ///< [s] simulated
+  std::int64_t particle_steps = 0;
+  std::int64_t thaws = 0;           ///< final stages, in which all particles move; more than one if the pile sank
+  std::int64_t thaw_steps = 0;      ///< of all of them, part of steps
+  double height_before_thaw = 0.0;  ///< [m] before the last of them; 0 if there was none
+  bool reached = false;             ///< height asked reached
+  std::string stop_reason;
+  std::vector<LayerRow> layers;
+  Audit audit;
+  // how (not the same from run to run)
+  int ranks = 1;
+  std::string decomposition, version, git, compiler, architecture;
+  double wall_seconds = 0.0;
+  double particle_steps_per_second = 0.0;
+  double bytes_per_particle = 0.0;  ///< worst rank
+  // what it cost, on rank 0; empty on the others
+  std::vector<RankNumbers> counters;  ///< counts: the same in every run on as many ranks
+  std::vector<RankNumbers> costs;     ///< times, memory
+};
+
+/// The numbers of that name, or null.
+[[nodiscard]] const RankNumbers* find(const std::vector<RankNumbers>& all, const std::string& name);
+/// Steps of moving particles over those of all, the frozen included, by the counters; 1 without.
+[[nodiscard]] double moving_share(const RunRecord& record);
+
+}  // namespace packmpi::report

@@ -1,0 +1,49 @@
+#include "report/size_words.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace packmpi::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const observe::SizePoints& p) {
+  return {{"d10", p.d10}, {"d30", p.d30},         {"d50", p.d50},       {"d60", p.d60},
+          {"d90", p.d90}, {"cu", p.uniformity()}, {"cc", p.curvature()}};
+}
+
+Json to_json(const observe::SizeMatch& match) {
+  return {{"asked", to_json(match.asked)}, {"got", to_json(match.got)}, {"distance", match.distance}};
+}
+
+void add_lines(const char* weighting, const observe::SizeMatch& match, std::vector<SizeLine>& lines) {
+  const auto line = [&](const char* what, double asked, double got) {
+    lines.push_back(
+        {fmt::format(fmt::runtime(what), weighting), fmt::format("{:.5g}", asked), fmt::format("{:.5g}", got)});
+  };
+  line("D10 by {} [m]", match.asked.d10, match.got.d10);
+  line("D30 by {} [m]", match.asked.d30, match.got.d30);
+  line("D50 by {} [m]", match.asked.d50, match.got.d50);
+  line("D60 by {} [m]", match.asked.d60, match.got.d60);
+  line("D90 by {} [m]", match.asked.d90, match.got.d90);
+  line("Cu by {}", match.asked.uniformity(), match.got.uniformity());
+  line("Cc by {}", match.asked.curvature(), match.got.curvature());
+  lines.push_back({fmt::format("distance of the curves by {}", weighting), "0", fmt::format("{:.3g}", match.distance)});
+}
+
+}  // namespace
+
+Json to_json(const observe::SizeMatches& sizes) {
+  return {{"number", to_json(sizes.by_number)}, {"mass", to_json(sizes.by_mass)}};
+}
+
+std::vector<SizeLine> size_lines(const observe::SizeMatches& sizes) {
+  std::vector<SizeLine> lines;
+  add_lines("number", sizes.by_number, lines);
+  add_lines("mass", sizes.by_mass, lines);
+  return lines;
+}
+
+}  // namespace packmpi::report

@@ -1,0 +1,21 @@
+/// The sizes asked and got, as JSON and as lines of a table. Private to this room.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "observe/size_match.hpp"
+
+namespace packmpi::report {
+
+/// {"number": {"asked": {"d10", ..., "cu", "cc"}, "got": the same, "distance"}, "mass": the same}. Local.
+[[nodiscard]] nlohmann::ordered_json to_json(const observe::SizeMatches& sizes);
+
+/// One line of "asked versus got".
+struct SizeLine {
+  std::string quantity, asked, got;
+};
+/// D10 to D90, Cu, Cc and the distance, by number, then by mass. Local.
+[[nodiscard]] std::vector<SizeLine> size_lines(const observe::SizeMatches& sizes);
+
+}  // namespace packmpi::report

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "report/report.hpp"
+#include "report/size_words.hpp"
+
+namespace packmpi::report {
+namespace {
+
+using Buffer = fmt::memory_buffer;
+
+std::string number(double value) { return fmt::format("{:.5g}", value); }
+std::string number(std::int64_t value) { return fmt::format("{}", value); }
+
+void line(Buffer& out, std::string_view quantity, std::string_view asked, std::string_view got) {
+  fmt::format_to(std::back_inserter(out), "  {:<44} {:>22} {:>22}\n", quantity, asked, got);
+}
+
+/// Only what was asked for is shown in the middle column.
+void compare(Buffer& out, const RunRecord& r) {
+  fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
+  line(out, "quantity", "asked", "got");
+  line(out, "particles", "", number(r.particles));
+  line(out, "height [m]", number(r.height_asked), number(r.height));
+  line(out, "highest top [m]", "", number(r.top));
+  line(out, "solid fraction below the height asked, phi", "", number(r.phi));
+  line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
+  line(out, "creep left, d phi_bulk / dt [1/s]", "", number(r.creep));
+  line(out, "mean radius [m]", number(r.mean_radius_asked), number(r.mean_radius));
+  line(out, "standard deviation of the radius [m]", number(r.sd_radius_asked), number(r.sd_radius));
+  line(out, "smallest radius [m]", number(r.min_radius_asked), number(r.min_radius));
+  line(out, "largest radius [m]", number(r.max_radius_asked), number(r.max_radius));
+  if (r.min_radius_asked < r.max_radius_asked) {
+    for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.asked, size.got);
+  }
+  line(out, "touching particles, mean", "", number(r.coordination));
+  line(out, "rattlers, share", "", number(r.rattlers));
+  line(out, "overlap / smaller radius, mean", "", number(r.mean_overlap));
+  line(out, "overlap / smaller radius, worst", "", number(r.audit.worst_overlap));
+  line(out, "wall penetration / radius, worst", "", number(r.audit.worst_wall_penetration));
+  line(out, "force on the floor [N] (asked: the weight)", number(r.weight), number(r.floor_force));
+  line(out, "kinetic energy [J]", "", number(r.kinetic_energy));
+  line(out, "particles lost", "0", number(r.audit.expected - r.audit.found));
+  line(out, "particles not finite", "0", number(r.audit.non_finite));
+  line(out, "particles outside", "0", number(r.audit.outside));
+  line(out, "time step [s]", "", number(r.time_step));
+  line(out, "steps", "", number(r.steps));
+  line(out, "stopped because", "", r.stop_reason.substr(0, 22));
+}
+
+void list_layers(Buffer& out, const RunRecord& r) {
+  constexpr const char* head = "  {:>5} {:>9} {:>10} {:>6} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:<8}\n";
+  constexpr const char* row =
+      "  {:>5} {:>9} {:>10} {:>6.4f} {:>6.4f} {:>8.4g} {:>8.4g} {:>8} {:>8.1e} {:>8.1e} {:<8.8}\n";
+  fmt::format_to(std::back_inserter(out), fmt::runtime(head), "layer", "inserted", "total", "asked", "got", "height m",
+                 "top m", "steps", "E/mgd", "overlap", "stop");
+  for (std::size_t k = 0; k < r.layers.size(); ++k) {
+    const LayerRow& layer = r.layers[k];
+    fmt::format_to(std::back_inserter(out), fmt::runtime(row), k + 1, layer.inserted, layer.total, layer.fraction_asked,
+                   layer.fraction_got, layer.height, layer.top, layer.steps, layer.kinetic_per_mgd, layer.max_overlap,
+                   layer.stop_reason);
+  }
+}
+
+void row(Buffer& out, std::string_view name, std::string_view sum, std::string_view max, std::string_view imbalance) {
+  fmt::format_to(std::back_inserter(out), "  {:<40} {:>22} {:>22} {:>8}\n", name, sum, max, imbalance);
+}
+
+// Times in seconds, memory in megabytes; bytes sent stay exact.
+std::string amount(const RankNumbers& numbers, std::int64_t value, bool exact) {
+  if (numbers.unit == "ns") return fmt::format("{:.3f}", static_cast<double>(value) * 1e-9);
+  if (numbers.unit == "B" && !exact) return fmt::format("{:.1f}", static_cast<double>(value) * 1e-6);
+  return number(value);
+}
+
+void list_numbers(Buffer& out, const std::vector<RankNumbers>& all, bool exact) {
+  for (const RankNumbers& numbers : all) {
+    if (numbers.max() == 0) continue;
+    std::string name = numbers.name;
+    std::ranges::replace(name, '_', ' ');
+    if (numbers.unit == "ns") name += " [s]";
+    if (numbers.unit == "B" && !exact) name += " [MB]";
+    row(out, name, amount(numbers, numbers.sum(), exact), amount(numbers, numbers.max(), exact),
+        fmt::format("{:.3f}", numbers.imbalance()));
+  }
+}
+
+// What it cost: nothing where nothing was counted.
+void list_counters(Buffer& out, const RunRecord& r) {
+  if (r.counters.empty()) return;
+  row(out, fmt::format("counted on {} rank{}", r.ranks, r.ranks == 1 ? "" : "s"), "sum", "max", "max/mean");
+  list_numbers(out, r.counters, true);
+  list_numbers(out, r.costs, false);
+  fmt::format_to(std::back_inserter(out), "  moving share of the particles {:.4f}", moving_share(r));
+  const RankNumbers* memory = find(r.costs, "memory");
+  if (memory != nullptr && r.particles > 0) {
+    fmt::format_to(std::back_inserter(out), "; bytes a particle {:.0f} allocated, {:.0f} resident with libraries",
+                   r.bytes_per_particle, static_cast<double>(memory->sum()) / static_cast<double>(r.particles));
+  }
+  fmt::format_to(std::back_inserter(out), "\n");
+}
+
+}  // namespace
+
+std::string to_table(const RunRecord& record) {
+  Buffer out;
+  compare(out, record);
+  list_layers(out, record);
+  list_counters(out, record);
+  return fmt::to_string(out);
+}
+
+}  // namespace packmpi::report

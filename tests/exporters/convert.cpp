@@ -1,0 +1,292 @@
+// Packs in the formats of other codes: the same bytes on any number of ranks, and every number of the pack in them.
+#include "exporters/convert.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <sstream>
+
+#include "exporters/law.hpp"
+#include "input/read.hpp"
+#include "pack/samples.hpp"
+
+namespace packmpi::exporters {
+using namespace disk;
+using namespace report;
+using namespace pack;
+namespace {
+
+using testing::Folder;
+using testing::Grain;
+using testing::Spread;
+
+std::string scene_text(int dimension, const std::string& boundary) {
+  return fmt::format(
+      "seed = 7\n[container]\ndimension = {}\nsize = [{}10.0, 0.6]\nboundary = [{}]\n"
+      "[particles]\ndensity = 2000.0\nyoungs_modulus = 1e8\npoisson_ratio = 0.25\n"
+      "radius = {{ distribution = \"uniform\", min = 0.0005, max = 0.102, weighting = \"number\" }}\n"
+      "[layers]\nthickness = 0.3\nfraction = 0.1\nduration = 1.0\n[jamming]\ngravity = 2.0\n",
+      dimension, dimension == 3 ? "12.0, " : "", boundary);
+}
+
+class Convert : public ::testing::Test {
+ protected:
+  comm::Comm comm_{MPI_COMM_WORLD};
+  comm::Comm alone_{MPI_COMM_SELF};
+  Folder folder_{comm_};
+
+  /// A pack of made-up particles in folder_; its path.
+  std::string make_pack(std::size_t count, int dimension, const std::string& boundary) {
+    std::vector<Grain> grains = testing::some_grains(count, dimension);
+    for (Grain& g : grains) g.r *= 0.1;
+    const auto parts = testing::make_parts(comm_, particles::layout_of(dimension, true), grains, Spread::some);
+    RunRecord record = testing::some_record(dimension, 1);
+    record.effective_input = input::parse(scene_text(dimension, boundary), "scene", {}).effective;
+    record.seed = 7;
+    const std::string path = folder_.file("sample.hdf");
+    write_pack(comm_, path, parts.view(false), record);
+    return path;
+  }
+
+  std::string subfolder(const std::string& name) {
+    if (comm_.rank() == 0) std::filesystem::create_directory(folder_.file(name));
+    comm_.barrier();
+    return folder_.file(name);
+  }
+
+  [[nodiscard]] std::size_t files_in(const std::string& folder) const {
+    comm_.barrier();
+    const auto n = static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+    comm_.barrier();
+    return n;
+  }
+
+  /// The words of the error that every rank is to throw with `code`.
+  std::string refused(const ConvertRequest& request, ExitCode code) {
+    std::string words;
+    try {
+      convert_pack(comm_, request);
+    } catch (const Error& error) {
+      words = error.what();
+      EXPECT_EQ(error.code(), code) << words;
+    }
+    EXPECT_FALSE(words.empty());
+    EXPECT_EQ(words, comm_.broadcast(0, words));
+    return words;
+  }
+};
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool contains(const std::string& words, const std::string& part) { return words.find(part) != std::string::npos; }
+
+constexpr const char* both_periodic = "\"periodic\", \"periodic\"";
+
+TEST_F(Convert, SameBytesOnAnyNumberOfRanks) {
+  struct Case {
+    int dimension;
+    const char* boundary;
+    Trim trim;
+    std::array<int, 2> copies;
+  };
+  const std::string here = subfolder("here");
+  const std::string one = subfolder("one");
+  for (const Case& c : {Case{3, both_periodic, Trim::none, {1, 1}}, Case{3, both_periodic, Trim::cut, {2, 3}},
+                        Case{2, "\"wall\"", Trim::drop, {1, 1}}, Case{2, "\"periodic\"", Trim::none, {3, 1}}}) {
+    const std::string pack = make_pack(1001, c.dimension, c.boundary);
+    for (const FormatWords& format : convert_formats()) {
+      ConvertRequest request{.pack = pack,
+                             .format = format.name,
+                             .file = here + "/a" + format.ending,
+                             .trim = c.trim,
+                             .copies = c.copies,
+                             .force = true};
+      const Converted done = convert_pack(comm_, request);
+      EXPECT_EQ(done.files.size(), *format.companion == '\0' ? 1u : 2u);
+      if (comm_.rank() != 0) continue;
+      request.file = one + "/a" + format.ending;
+      const Converted serial = convert_pack(alone_, request);
+      EXPECT_EQ(done.particles, serial.particles);
+      EXPECT_EQ(done.volume, serial.volume);
+      for (std::size_t f = 0; f < done.files.size(); ++f) {
+        EXPECT_GT(contents(done.files[f]).size(), 100u);
+        EXPECT_TRUE(contents(done.files[f]) == contents(serial.files[f])) << done.files[f];
+      }
+    }
+    comm_.barrier();
+  }
+  EXPECT_EQ(files_in(here), 17u);  // ten files, seven of them with a companion, and no temporary
+}
+
+/// Numbers of a CSV file, row by row.
+std::vector<std::vector<double>> rows_of(const std::string& path) {
+  std::istringstream file(contents(path));
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with('#') || line.starts_with("id")) continue;
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+  }
+  return rows;
+}
+
+/// A row as it must be.
+std::vector<double> expected_row(const PackRows& pack, std::size_t k, std::int64_t id, const Vec3& shift) {
+  const Vec3& x = pack.position[k];
+  const Vec3& v = pack.velocity[k];
+  const Vec3& w = pack.spin[k];
+  return {static_cast<double>(id),
+          x[0] + shift[0],
+          x[1] + shift[1],
+          x[2] + shift[2],
+          pack.radius[k],
+          v[0],
+          v[1],
+          v[2],
+          w[0],
+          w[1],
+          w[2],
+          static_cast<double>(pack.layer[k]),
+          static_cast<double>(pack.contacts[k])};
+}
+
+TEST_F(Convert, EveryNumberOfThePackInManyBatches) {
+  const std::string path = make_pack(40000, 3, both_periodic);
+  const Converted done = convert_pack(comm_, {.pack = path, .format = "csv"});
+  EXPECT_EQ(done.files, std::vector<std::string>{folder_.file("sample.csv")});
+  EXPECT_EQ(done.particles, 40000);
+  if (comm_.rank() != 0) return;
+  const PackRows pack = read_pack(path);
+  const auto rows = rows_of(done.files[0]);
+  ASSERT_EQ(rows.size(), 40000u);
+  double volume = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    ASSERT_EQ(rows[k], expected_row(pack, k, static_cast<std::int64_t>(k) + 1, {})) << k;
+    volume += 4.0 / 3.0 * 3.14159265358979323846 * std::pow(pack.radius[k], 3);
+  }
+  EXPECT_NEAR(done.volume, volume, 1e-8 * volume);
+  EXPECT_TRUE(contains(contents(done.files[0]), "# 40000 spheres of sample.hdf (made by packmpi 0.1.0), seed 7;"));
+}
+
+TEST_F(Convert, TrimmedAndReplicatedParticlesAreTheRightOnes) {
+  const std::string path = make_pack(500, 3, both_periodic);
+  const PackRows pack = read_pack(path);
+  for (const Trim trim : {Trim::none, Trim::drop, Trim::cut}) {
+    const Converted done =
+        convert_pack(comm_, {.pack = path, .format = "csv", .trim = trim, .copies = {2, 2}, .force = true});
+    std::vector<std::vector<double>> expected;
+    for (int copy = 0; copy < 4; ++copy) {
+      for (std::size_t k = 0; k < pack.id.size(); ++k) {
+        const double level = pack.position[k][2] + (trim == Trim::drop ? pack.radius[k] : 0.0);
+        if (trim != Trim::none && level > 0.6) continue;
+        const Vec3 shift{copy % 2 * 12.0, copy / 2 * 10.0, 0.0};
+        expected.push_back(expected_row(pack, k, 500 * copy + static_cast<std::int64_t>(k) + 1, shift));
+      }
+    }
+    EXPECT_EQ(done.particles, static_cast<std::int64_t>(expected.size()));
+    if (comm_.rank() == 0) {
+      EXPECT_TRUE(rows_of(done.files[0]) == expected);
+      EXPECT_TRUE(contains(contents(done.files[0]), "# replicated: 2 x 2 copies"));
+      EXPECT_EQ(contains(contents(done.files[0]), "# trimmed:"), trim != Trim::none);
+    }
+    comm_.barrier();
+  }
+}
+
+TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
+  for (const int dimension : {2, 3}) {
+    const std::string path = make_pack(100, dimension, dimension == 3 ? "\"wall\", \"periodic\"" : "\"wall\"");
+    const Converted done = convert_pack(comm_, {.pack = path, .format = "lammps", .force = true});
+    const PackRows pack = read_pack(path);
+    std::istringstream file(contents(done.files[0]));
+    std::array<std::array<double, 2>, 3> box{};
+    std::size_t axis = 0;
+    for (std::string line; axis < 3 && std::getline(file, line);) {
+      EXPECT_LE(line.size(), 254u);
+      if (line.find("lo ") == std::string::npos || line.front() == 'L') continue;
+      std::istringstream(line) >> box[axis][0] >> box[axis][1];
+      ++axis;
+    }
+    ASSERT_EQ(axis, 3u);
+    if (dimension == 3) {
+      EXPECT_EQ(box[1], (std::array{0.0, 10.0}));
+    } else {
+      EXPECT_EQ(box[2], (std::array{-0.5, 0.5}));
+    }
+    for (const Vec3& x : pack.position) {
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_TRUE(box[c][0] < x[c] && x[c] < box[c][1]) << x[c];
+    }
+  }
+}
+
+TEST_F(Convert, AnEmptyPackIsAFileWithoutRows) {
+  const std::string path = make_pack(0, 3, both_periodic);
+  for (const FormatWords& format : convert_formats()) {
+    EXPECT_EQ(convert_pack(comm_, {.pack = path, .format = format.name}).particles, 0) << format.name;
+  }
+}
+
+TEST_F(Convert, WhatIsAskedWronglyIsRefusedAndNothingIsWritten) {
+  const std::string path = make_pack(20, 3, "\"periodic\", \"wall\"");
+  const ConvertRequest csv{.pack = path, .format = "csv"};
+  const auto with = [&](const std::function<void(ConvertRequest&)>& change) {
+    ConvertRequest request = csv;
+    change(request);
+    return refused(request, ExitCode::bad_input);
+  };
+  EXPECT_TRUE(contains(with([](auto& r) { r.format = "lamps"; }), "did you mean lammps?"));
+  EXPECT_TRUE(contains(with([](auto& r) { r.copies = {1, 2}; }), "y ends in walls"));
+  EXPECT_TRUE(contains(with([](auto& r) { r.copies = {0, 1}; }), "1 or more"));
+  EXPECT_TRUE(contains(with([&](auto& r) { r.file = folder_.path(); }), "is a folder"));
+  EXPECT_TRUE(contains(with([&](auto& r) { r.file = r.pack, r.force = true; }), "is the pack itself"));
+  EXPECT_TRUE(contains(with([&](auto& r) { r.format = "lammps", r.file = folder_.file("a.in"); }), "second file"));
+  ConvertRequest flat = csv;
+  EXPECT_EQ(files_in(folder_.path()), 1u);
+
+  convert_pack(comm_, csv);
+  EXPECT_TRUE(contains(refused(csv, ExitCode::bad_input), "use --force"));
+  flat.pack = make_pack(20, 2, "\"periodic\"");
+  flat.copies = {1, 2};
+  EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "no second lateral axis"));
+}
+
+TEST_F(Convert, WhatCannotBeReadOrWrittenLeavesNothingBehind) {
+  const std::string path = make_pack(20, 3, both_periodic);
+  EXPECT_TRUE(contains(refused({.pack = folder_.file("no.hdf"), .format = "csv"}, ExitCode::io_failure), "no.hdf"));
+  EXPECT_TRUE(contains(refused({.pack = path, .format = "csv", .file = folder_.file("no/a.csv")}, ExitCode::io_failure),
+                       "No such file"));
+  if (comm_.rank() == 0) {
+    std::ofstream(folder_.file("text.hdf")) << "not a pack";
+    std::filesystem::create_directories(folder_.file("a.in.tmp"));  // the companion's temporary cannot be made
+  }
+  comm_.barrier();
+  (void)refused({.pack = folder_.file("text.hdf"), .format = "csv"}, ExitCode::io_failure);
+  (void)refused({.pack = path, .format = "lammps", .file = folder_.file("a.data")}, ExitCode::io_failure);
+  EXPECT_EQ(files_in(folder_.path()), 3u);
+}
+
+TEST(Law, RestitutionIsThatOfTheDampingRatio) {
+  EXPECT_NEAR(tsuji_restitution(0.1), 0.6103979305532861, 1e-12);
+  EXPECT_NEAR(restitution(0.1), 0.7073512849095, 1e-12);
+  EXPECT_EQ(restitution(0.0), 1.0);
+  EXPECT_EQ(restitution(1.0), 0.0);
+  for (const double xi : {0.0, 0.01, 0.3, 0.6, 1.0}) {
+    const double e = tsuji_restitution(xi);
+    const double alpha = 1.2728 - 4.2783 * e + 11.087 * std::pow(e, 2) - 22.348 * std::pow(e, 3) +
+                         27.467 * std::pow(e, 4) - 18.022 * std::pow(e, 5) + 4.8218 * std::pow(e, 6);
+    EXPECT_NEAR(alpha, std::sqrt(6.0) * xi, 1e-12) << xi;
+  }
+}
+
+}  // namespace
+}  // namespace packmpi::exporters

@@ -1,0 +1,254 @@
+// What `packmpi estimate` tells, against a pack that is made, against the loop itself, and against its own inverse.
+#include "forecast/estimate.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "input/read.hpp"
+#include "pack/checkpoint.hpp"
+#include "pack/pack.hpp"
+#include "run/make_pack.hpp"
+#include "scene/expectation.hpp"
+
+namespace packmpi::forecast {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using Set = std::vector<std::string>;
+
+const char* const brick = R"(
+[container]
+size = [0.3, 0.2, 0.3]
+boundary = ["periodic", "periodic"]
+[particles]
+density = 1000.0
+youngs_modulus = 1e7
+poisson_ratio = 0.25
+radius = { distribution = "equal", value = 0.02 }
+[layers]
+thickness = 0.1
+fraction = 0.22
+duration = 0.4
+[jamming]
+gravity = 5.0
+[contact]
+damping_ratio = 0.3
+)";
+
+class Estimates : public ::testing::Test {
+ protected:
+  const comm::Comm comm_{MPI_COMM_WORLD};
+  fs::path folder_;
+
+  void SetUp() override {
+    const fs::path here = fs::temp_directory_path() / ("packmpi_estimate_" + std::to_string(::getpid()));
+    folder_ = comm_.broadcast(0, here.string());
+    if (comm_.rank() == 0) {
+      fs::create_directories(folder_);
+      std::ofstream(folder_ / "brick.toml") << brick;
+    }
+    comm_.barrier();
+  }
+  void TearDown() override {
+    comm_.barrier();
+    if (comm_.rank() == 0) fs::remove_all(folder_);
+    comm_.barrier();
+  }
+
+  [[nodiscard]] run::Options options(const Set& set = {}) const {
+    run::Options options;
+    options.scene = folder_ / "brick.toml";
+    options.folder = folder_;
+    options.overrides.set = set;
+    options.force = true;
+    options.verbosity = log::Verbosity::quiet;
+    return options;
+  }
+  [[nodiscard]] report::Estimate of(const Question& question, const Set& set = {}) const {
+    const run::Options asked = options(set);
+    return estimate(comm_, asked.scene, asked.overrides, question);
+  }
+  [[nodiscard]] scene::Scene scene(const Set& set) const {
+    return scene::build(input::read(comm_, folder_ / "brick.toml", {set}));
+  }
+  /// The words of the error, which is one line.
+  [[nodiscard]] std::string refusal(const Question& question, const Set& set = {}) const {
+    try {
+      (void)of(question, set);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+/// The changes of the scene that an estimate proposes.
+Set proposed(const report::Estimate& e) {
+  std::string size;
+  for (const double side : e.size) size += fmt::format("{}{}", size.empty() ? "" : ",", side);
+  return {fmt::format("container.size=[{}]", size), fmt::format("layers.thickness={}", e.layer_thickness)};
+}
+
+Question without_probe(Question question) {
+  question.probe = false;
+  return question;
+}
+
+// The whole way: a number of particles, the scene for it, the pack.
+TEST_F(Estimates, APackIsWhatWasEstimated) {
+  const report::Estimate e = of(without_probe({.particles = 300}));
+  const report::RunRecord record = run::make_pack(comm_, scene(proposed(e)), options());
+  EXPECT_EQ(std::ssize(record.layers), e.layers.value);
+  EXPECT_EQ(record.layers.front().inserted, e.a_layer) << "exact for equal radii";
+  EXPECT_LE(std::abs(record.particles - 300), e.layers.value);
+  EXPECT_EQ(record.steps, e.steps);
+  EXPECT_EQ(record.particle_steps, e.particle_steps);
+  EXPECT_NEAR(record.duration, e.duration, 1e-9);
+  EXPECT_NEAR(record.height, e.height, 0.06 * e.height);
+  const auto pack = static_cast<double>(fs::file_size(folder_ / "brick.hdf"));
+  EXPECT_NEAR(static_cast<double>(e.pack_bytes), pack, 0.02 * pack);
+  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, std::nullopt), static_cast<std::int64_t>(pack));
+}
+
+TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
+  const Set set{"container.size=[0.5,0.5,0.06]", "layers.thickness=0.3", "layers.duration=0.1", "output.contacts=true"};
+  run::Options asked = options();
+  asked.max_steps = 20;
+  EXPECT_THROW((void)run::make_pack(comm_, scene(set), asked), Error);
+  const std::string path = folder_ / "brick.ckpt.A.hdf";
+  const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
+  EXPECT_EQ(pack::checkpoint_bytes(particles::layout_of(3, true), pack::read_state(path)), bytes);
+  const report::Estimate e = of(without_probe({}), set);
+  ASSERT_EQ(e.layers.value, 1);
+  EXPECT_NEAR(static_cast<double>(e.checkpoint_bytes), static_cast<double>(bytes), 0.02 * static_cast<double>(bytes));
+  const report::RunRecord record = run::make_pack(comm_, scene(set), options());
+  const std::int64_t contacts = std::llround(0.5 * record.coordination * static_cast<double>(record.particles));
+  EXPECT_GT(contacts, 0);
+  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts),
+            static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
+}
+
+TEST_F(Estimates, EveryQuestionIsTheOthersAnswer) {
+  for (const Set& given :
+       {Set{}, Set{"container.dimension=2", "container.size=[0.5,0.4]", "container.boundary=[\"wall\"]"},
+        Set{"particles.radius={distribution=\"uniform\",weighting=\"mass\",min=0.01,max=0.02}",
+            "container.boundary=[\"wall\",\"periodic\"]"}}) {
+    const std::int64_t wanted = 5000;
+    const report::Estimate tall = of(without_probe({.particles = wanted}), given);
+    EXPECT_EQ(tall.found, "height");
+    EXPECT_LE(std::abs(tall.particles.value - wanted), tall.layers.value);
+    Set with = given;
+    for (const std::string& set : proposed(tall)) with.push_back(set);
+    const report::Estimate back = of(without_probe({}), with);
+    EXPECT_EQ(back.found, "particles");
+    EXPECT_EQ(back.particles.value, tall.particles.value);
+    EXPECT_EQ(back.layers.value, tall.layers.value);
+
+    const double height = 0.7;
+    const report::Estimate wide = of(without_probe({.particles = wanted, .height = height}), given);
+    EXPECT_EQ(wide.found, "floor");
+    EXPECT_EQ(wide.size.back(), height);
+    EXPECT_LE(std::abs(wide.particles.value - wanted), wide.layers.value + wanted / 500) << "in whole layers";
+    if (wide.size.size() == 3) {
+      EXPECT_NEAR(wide.size[0] / wide.size[1], 1.5, 1e-9) << "of the scene's shape";
+    }
+  }
+}
+
+TEST_F(Estimates, NothingIsWritten) {
+  const auto files = [&] {
+    return std::distance(fs::directory_iterator(fs::current_path()), fs::directory_iterator()) +
+           std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  };
+  const auto before = files();
+  comm_.barrier();
+  EXPECT_GT(of(without_probe({})).pack_bytes, 0);
+  comm_.barrier();
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Estimates, OneSideIsFound) {
+  const report::Estimate e = of(without_probe({.particles = 2000, .height = 0.4, .sides = {0.25, std::nullopt}}));
+  EXPECT_EQ(e.size[0], 0.25);
+  EXPECT_LE(std::abs(e.particles.value - 2000), e.layers.value);
+  const report::Estimate other = of(without_probe({.particles = 2000, .sides = {std::nullopt, 0.25}}));
+  EXPECT_EQ(other.size[1], 0.25);
+  EXPECT_EQ(other.size[2], 0.3) << "the scene's height";
+}
+
+TEST_F(Estimates, StepsOfTheMovingParticlesAreThoseOfTheLoop) {
+  for (const int window : {0, 2, 50}) {
+    const scene::Scene s = scene({"dynamics.window=" + std::to_string(window), "dynamics.thaw=0.2",
+                                  "dynamics.time_step=1e-4", "layers.time_step=2e-4"});
+    std::int64_t steps = 0;
+    for (std::int64_t layer = 1; layer <= 7; ++layer)
+      steps += 2000 * 10 * (window > 0 ? std::min<std::int64_t>(window, layer) : layer);
+    EXPECT_EQ(particle_steps_of(s, 7, 10), steps + 2000 * 70) << window;
+  }
+}
+
+TEST_F(Estimates, TheFractionIsThatOfKnownPacks) {
+  const auto fraction = [&](const Set& set) { return scene::expected_fraction(scene(set)).value; };
+  const Set paper{"container.size=[1,1,0.5]", "container.boundary=[\"wall\",\"wall\"]"};
+  Set without = paper;
+  without.emplace_back("dynamics.rotation=false");
+  // doc/reproduction.md, example 5.3: particles, height and so the pile's fraction.
+  const double volume = 4.0 / 3.0 * 3.141592653589793 * 8e-6;
+  EXPECT_NEAR(fraction(paper), 9711 * volume / 0.5400, 0.004);
+  EXPECT_NEAR(fraction(without), 8964 * volume / 0.5186, 0.004);
+  EXPECT_EQ(of(without_probe({.fraction = 0.5})).fraction, 0.5);
+  EXPECT_EQ(of(without_probe({.fraction = 0.5})).fraction_error, 0.0);
+}
+
+TEST_F(Estimates, RanksShareTheMemory) {
+  const Set large{"container.size=[10,4,1]"};
+  const report::Estimate one = of(without_probe({.ranks = 1}), large);
+  const report::Estimate ten = of(without_probe({.ranks = 10}), large);
+  EXPECT_EQ(one.ghosts, 0.0);
+  EXPECT_NEAR(ten.ghosts, 2.0 * scene(large).column_width() / 1.0, 1e-12) << "slabs a metre thick";
+  const double base = 51e6;
+  EXPECT_NEAR(
+      (static_cast<double>(ten.settling_bytes) - base) * 10.0 / (static_cast<double>(one.settling_bytes) - base),
+      1.0 + 0.82 * ten.ghosts, 0.1 * ten.ghosts);
+  EXPECT_GT(ten.writing_bytes, ten.settling_bytes);
+}
+
+TEST_F(Estimates, WhatHasNoAnswerIsRefused) {
+  EXPECT_THAT(refusal(without_probe({.particles = 1000, .height = 0.2, .sides = {0.2, 0.2}})),
+              HasSubstr("nothing to find"));
+  EXPECT_THAT(refusal(without_probe({.sides = {0.2, std::nullopt}})), HasSubstr("--particles"));
+  EXPECT_THAT(refusal(without_probe({.particles = 9, .sides = {std::nullopt}})), HasSubstr("1 side given"));
+  EXPECT_THAT(refusal(without_probe({.ranks = 100000})), HasSubstr("enough for"));
+  EXPECT_THAT(refusal(without_probe({.particles = 3, .height = 5.0})), HasSubstr("less than one"));
+  EXPECT_THAT(refusal(without_probe({.particles = 2})), HasSubstr("less than a layer"));
+}
+
+TEST_F(Estimates, TheProbeRunsAndTheJsonSaysIt) {
+  Question question{.ranks = 2};
+  const report::Estimate e = of(question, {"layers.duration=0.02"});
+  ASSERT_TRUE(e.probe);
+  EXPECT_GT(e.probe->particle_steps_per_second, 0.0);
+  EXPECT_GT(e.probe->particles, 0);
+  EXPECT_NEAR(e.seconds,
+              static_cast<double>(e.particle_steps) / (2.0 * e.probe->particle_steps_per_second) +
+                  static_cast<double>(e.particles.value) / (2.0 * e.probe->insertions_per_second),
+              1e-9 * e.seconds);
+  const auto json = nlohmann::json::parse(report::to_json(e));
+  EXPECT_EQ(json["format"], "packmpi-estimate");
+  EXPECT_EQ(json["particles"]["value"], e.particles.value);
+  EXPECT_EQ(json["files"]["pack"], e.pack_bytes);
+  EXPECT_EQ(json["wall_seconds"], e.seconds);
+  EXPECT_THAT(report::to_table(e), HasSubstr("wall time"));
+}
+
+}  // namespace
+}  // namespace packmpi::forecast

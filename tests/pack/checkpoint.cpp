@@ -1,0 +1,264 @@
+/// A checkpoint gives back every bit on any number of ranks, is the same file from any number of them, and nothing
+/// damaged is ever taken for a sound one.
+#include "pack/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <thread>
+
+#include "disk/text_file.hpp"
+#include "pack/samples.hpp"
+
+namespace packmpi::pack {
+using namespace disk;
+using namespace report;
+namespace {
+
+using testing::Folder;
+using testing::Spread;
+
+constexpr std::size_t particle_count = 137;
+
+RunState some_state(int dimension, bool rotation, std::size_t count) {
+  RunState state;
+  state.serial = 41;
+  state.effective_input = "seed = 18446744073709551615 # \xC2\xB5m\n";
+  state.version = "0.1.0";
+  state.git = "abc-dirty";
+  state.dimension = dimension;
+  state.rotation = rotation;
+  state.first_ids = {0, 100, 100};
+  state.count = static_cast<GlobalId>(count);
+  state.steps = (std::int64_t{1} << 53) + 1;  // no double
+  state.particle_steps = INT64_MAX;
+  state.layers = testing::some_record(dimension, 2).layers;
+  state.creep = -0.0;
+  state.phase = Phase::settling;
+  state.moving_from = 5;
+  state.height = 0.3;
+  state.thaws = 1;
+  state.thaw_steps = 2;
+  state.height_before_thaw = 0.7;
+  state.row = state.layers[1];
+  state.row.fraction_got = 0.1 + 0.2;
+  state.row.height = 4.9e-324;
+  state.done = 17;
+  state.phi_before = 1.0 / 3.0;
+  state.mean_height = 0.7;
+  state.calm_since = 3;
+  state.phi_calm = 0.3;
+  return state;
+}
+
+/// Everything of a state as the checkpoint's own text has it, for comparing: each double by its bits.
+std::vector<std::uint64_t> numbers_of(const RunState& state) {
+  std::vector<std::uint64_t> all;
+  const auto add = [&all](auto value) {
+    std::uint64_t bits = 0;
+    static_assert(sizeof value <= sizeof bits);
+    std::memcpy(&bits, &value, sizeof value);
+    all.push_back(bits);
+  };
+  for (const auto value : {state.serial, state.count, state.steps, state.particle_steps, state.done, state.moving_from,
+                           state.thaws, state.thaw_steps, state.calm_since})
+    add(value);
+  for (const double value :
+       {state.creep, state.phi_before, state.height, state.height_before_thaw, state.mean_height, state.phi_calm})
+    add(value);
+  std::vector<LayerRow> rows = state.layers;
+  rows.push_back(state.row);
+  for (const LayerRow& row : rows) {
+    for (const auto value : {row.inserted, row.total, row.attempts, row.steps}) add(value);
+    for (const double value : {row.fraction_asked, row.fraction_got, row.region_bottom, row.height, row.top,
+                               row.duration, row.kinetic_per_mgd, row.max_overlap, row.coordination}) {
+      add(value);
+    }
+  }
+  return all;
+}
+
+void expect_same(const RunState& a, const RunState& b) {
+  EXPECT_EQ(numbers_of(a), numbers_of(b));
+  EXPECT_EQ(a.effective_input, b.effective_input);
+  EXPECT_EQ(a.version + a.git, b.version + b.git);
+  EXPECT_EQ(a.first_ids, b.first_ids);
+  EXPECT_EQ(a.phase, b.phase);
+  EXPECT_EQ(a.row.stop_reason, b.row.stop_reason);
+  ASSERT_EQ(a.layers.size(), b.layers.size());
+  for (std::size_t k = 0; k < a.layers.size(); ++k) EXPECT_EQ(a.layers[k].stop_reason, b.layers[k].stop_reason);
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
+ protected:
+  comm::Comm comm_{MPI_COMM_WORLD};
+  comm::Comm alone_{MPI_COMM_SELF};
+  Folder folder_{comm_};
+  int dimension_ = std::get<0>(GetParam());
+  bool rotation_ = std::get<1>(GetParam());
+  particles::Layout layout_ = particles::layout_of(dimension_, rotation_);
+  std::vector<testing::Grain> grains_ = testing::some_grains(particle_count, dimension_);
+  RunState state_ = some_state(dimension_, rotation_, particle_count);
+
+  /// The odd ids from one store, the even ones from another.
+  void write(const comm::Comm& comm, const std::string& path, const particles::Store& store) const {
+    particles::Store odd(layout_), even(layout_);
+    for (LocalIndex i = 0; i < store.owned(); ++i) {
+      const GlobalId id = store.ids()[static_cast<std::size_t>(i)];
+      (id % 2 == 0 ? even : odd).add_record(id, store.record(i));
+    }
+    const std::array<const particles::Store*, 2> stores{&odd, &even};
+    write_checkpoint(comm, path, stores, state_);
+  }
+  [[nodiscard]] std::uint64_t digest(const comm::Comm& comm, const particles::Store& store) const {
+    return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(particles::digest(store))));
+  }
+  /// What `path` is refused for; none if it is taken, and then it is what was written.
+  [[nodiscard]] std::optional<std::string> refusal(const std::string& path) const {
+    particles::Store store(layout_);
+    try {
+      const RunState state = read_checkpoint(alone_, path, store);
+      EXPECT_EQ(digest(alone_, store), digest(alone_, testing::scattered(alone_, layout_, grains_, Spread::all)));
+      EXPECT_EQ(numbers_of(state), numbers_of(state_));
+      EXPECT_EQ(state.effective_input, state_.effective_input);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_checkpoint);
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+      return error.what();
+    }
+    return std::nullopt;
+  }
+};
+
+TEST_P(Checkpoint, GivesBackEveryBit) {
+  const std::string path = folder_.file("a.hdf");
+  for (const Spread spread : testing::every_spread) {
+    const particles::Store store = testing::scattered(comm_, layout_, grains_, spread);
+    write(comm_, path, store);
+    particles::Store back(layout_);
+    expect_same(read_checkpoint(comm_, path, back), state_);
+    EXPECT_EQ(digest(comm_, back), digest(comm_, store));
+    EXPECT_EQ(comm_.sum(std::int64_t{back.owned()}), static_cast<std::int64_t>(particle_count));
+    expect_same(read_state(path), state_);
+    comm_.barrier();
+  }
+}
+
+TEST_P(Checkpoint, IsTheSameFileFromAnyNumberOfRanks) {
+  write(comm_, folder_.file("all.hdf"), testing::scattered(comm_, layout_, grains_, Spread::all));
+  if (comm_.rank() != 0) return;
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // no second of the clock may be in it
+  write(alone_, folder_.file("one.hdf"), testing::scattered(alone_, layout_, grains_, Spread::all));
+  EXPECT_TRUE(bytes_of(folder_.file("all.hdf")) == bytes_of(folder_.file("one.hdf")));
+}
+
+TEST_P(Checkpoint, BeforeTheFirstLayer) {
+  RunState empty;
+  empty.dimension = dimension_;
+  empty.rotation = rotation_;
+  const std::string path = folder_.file("a.hdf");
+  const particles::Store none(layout_);
+  const std::array<const particles::Store*, 1> stores{&none};
+  write_checkpoint(comm_, path, stores, empty);
+  particles::Store back(layout_);
+  EXPECT_EQ(read_checkpoint(comm_, path, back).count, 0);
+  EXPECT_EQ(back.owned(), 0);
+}
+
+TEST_P(Checkpoint, TruncatedAnywhereIsRefused) {
+  const std::string path = folder_.file("a.hdf");
+  write(comm_, path, testing::scattered(comm_, layout_, grains_, Spread::all));
+  if (comm_.rank() != 0) return;
+  const std::string whole = bytes_of(path);
+  int refused = 0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    write_bytes(path, whole.substr(0, whole.size() * k / 64));
+    const bool right = refusal(path).has_value();
+    EXPECT_TRUE(right) << "truncated to " << k << " of 64";
+    refused += right ? 1 : 0;
+  }
+  std::printf("count: checkpoints truncated = 64, refused = %d\n", refused);
+  write_bytes(path, whole.substr(0, whole.size() - 1));
+  EXPECT_TRUE(refusal(path).has_value());
+  write_bytes(path, whole);
+  EXPECT_EQ(refusal(path), std::nullopt);
+}
+
+TEST_P(Checkpoint, AFlippedBitInAnyDatasetIsRefused) {
+  const std::string path = folder_.file("a.hdf");
+  write(comm_, path, testing::scattered(comm_, layout_, grains_, Spread::all));
+  if (comm_.rank() != 0) return;
+  const std::string whole = bytes_of(path);
+  std::vector<std::string> names{
+      "/state", "/effective_input", "/particles/id", "/particles/position", "/particles/radius", "/particles/velocity"};
+  if (rotation_) names.emplace_back("/particles/surface_speed");
+  int tried = 0, refused = 0;
+  for (const std::string& name : names) {
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+    const std::size_t begin = H5Dget_offset(dataset), size = H5Dget_storage_size(dataset);
+    H5Dclose(dataset);
+    H5Fclose(file);
+    ASSERT_LE(begin + size, whole.size()) << name;
+    for (std::size_t k = 0; k < 16; ++k) {
+      std::string damaged = whole;
+      const std::size_t at = begin + (size - 1) * k / 15;
+      damaged[at] = static_cast<char>(damaged[at] ^ (1 << k % 8));
+      write_bytes(path, damaged);
+      const bool right = refusal(path).has_value();
+      EXPECT_TRUE(right) << name << ", byte " << at - begin;
+      ++tried;
+      refused += right ? 1 : 0;
+    }
+    write_bytes(path, whole);
+  }
+  std::printf("count: bits flipped in datasets of checkpoints = %d, refused = %d\n", tried, refused);
+}
+
+// Headers, attributes and what means nothing included.
+TEST_P(Checkpoint, AFlippedBitAnywhereIsRefused) {
+  const std::string path = folder_.file("a.hdf");
+  write(comm_, path, testing::scattered(comm_, layout_, grains_, Spread::all));
+  if (comm_.rank() != 0) return;
+  const std::string whole = bytes_of(path);
+  int tried = 0, refused = 0;
+  for (std::size_t at = 0; at < whole.size(); at += at < 4096 || at + 400 > whole.size() ? 13 : 101, ++tried) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
+    write_bytes(path, damaged);
+    const bool taken = !refusal(path);
+    EXPECT_FALSE(taken) << "byte " << at << " of " << whole.size();
+    refused += taken ? 0 : 1;
+  }
+  std::printf("count: bits flipped anywhere in checkpoints = %d, refused = %d\n", tried, refused);
+}
+
+TEST_P(Checkpoint, OtherFilesAreRefused) {
+  const std::string path = folder_.file("a.hdf");
+  const testing::Parts parts = testing::make_parts(comm_, layout_, grains_, Spread::all);
+  write_pack(comm_, path, parts.view(false), testing::some_record(dimension_, 1));
+  if (comm_.rank() != 0) return;
+  EXPECT_NE(refusal(path)->find("not a checkpoint"), std::string::npos);
+  write_bytes(path, "text");
+  EXPECT_TRUE(refusal(path).has_value());
+  EXPECT_NE(refusal(folder_.file("nowhere.hdf"))->find("no such file"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, Checkpoint, ::testing::Combine(::testing::Values(2, 3), ::testing::Bool()));
+
+}  // namespace
+}  // namespace packmpi::pack
