@@ -75,14 +75,14 @@ def row(name, scene, sets):
     run([*words, "--quiet", "--force", "-o", str(FOLDER)])
     summary = json.loads((FOLDER / (scene + ".json")).read_text())
     pack = FOLDER / (scene + ".hdf")
-    size = summary["asked"]["size"]
+    size = summary["target"]["size"]
     area = size[0] * (size[1] if len(size) == 3 else 1.0)
-    got = solid_volume(pack, len(size)) / area / summary["got"]["height"]
+    got = solid_volume(pack, len(size)) / area / summary["achieved"]["height"]
     fraction = told["fraction"]
     number = told["particles"]
     print(f"{name}: {fraction['value']:.4f} {got:.4f}", flush=True)
     return (f"| {name} | {fraction['value']:.3f} ± {fraction['error']:.3f} | {got:.3f} | {number['value']} "
-            f"({number['least']} to {number['most']}) | {summary['got']['particles']} | {told['files']['pack']} | "
+            f"({number['least']} to {number['most']}) | {summary['achieved']['particles']} | {told['files']['pack']} | "
             f"{pack.stat().st_size} | {told['wall_seconds']:.2g} | {summary['provenance']['wall_seconds']:.2g} |")
 
 

@@ -19,7 +19,7 @@ def main():
     text = [f"{measuring.made_by('scripts/exact_problems.py')}. Relative errors of the explicit scheme. Steps are shares of T, the duration of the "
             "contact by eq. (23); T/5 is what `time_step = \"auto\"` takes. Errors of impacts are root mean squares over eight phases of the first "
             "touch within a step. Order: between T/40 and T/160.", "", output(), "",
-            "**What the law can bear.** A loose layer of spheres falls and comes to rest within two falls. Sound: no guard speaks, and the energy "
+            "**What the law can bear.** A loose layer of spheres falls and comes to rest within two falls. Valid: no guard speaks, and the energy "
             "never rises by a hundredth of what was given.", "", output("guard")]
     print("\n".join(text))
     measuring.write_block(measuring.ROOT / "doc/accuracy.md", "exact", "\n".join(text))

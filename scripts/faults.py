@@ -49,7 +49,7 @@ gravity = 5.0
 [dynamics]
 time_step = 1.0e-4
 window = 2
-thaw = 0.2
+relaxation = 0.2
 [checkpoint]
 every = "25 steps"
 """

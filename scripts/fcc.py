@@ -35,7 +35,7 @@ def bin_of(curve, x):
 
 
 def row(radius, rotation, summary, analysis):
-    got, order, g = summary["got"], analysis["order"], analysis["pair_distribution"]["g"]
+    got, order, g = summary["achieved"], analysis["order"], analysis["pair_distribution"]["g"]
     counted = order["counted"]
     low, high = (bin_of(g, x) for x in (1.65, 2.05))
     return (f"| {radius * 1e3:g} mm | {'on' if rotation == 'true' else 'off'} | {got['particles']} | {got['phi_bulk']:.4f} | {counted} | "

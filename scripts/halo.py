@@ -29,8 +29,8 @@ def run(options, flight, folder):
     if done.returncode not in (0, 3):
         sys.exit(f"halo: a run ended with exit code {done.returncode}")
     summary = json.loads((Path(folder) / "million.json").read_text())
-    steps, costs = summary["got"]["steps"], {name: summary["costs"][name]["sum"] * 0.5e-9 for name in ("stepping", "rebuilding", "refreshing")}
-    return (costs["stepping"] - costs["rebuilding"]) / steps, costs["refreshing"] / steps, summary["got"]["particles"]
+    steps, costs = summary["achieved"]["steps"], {name: summary["costs"][name]["sum"] * 0.5e-9 for name in ("stepping", "rebuilding", "refreshing")}
+    return (costs["stepping"] - costs["rebuilding"]) / steps, costs["refreshing"] / steps, summary["achieved"]["particles"]
 
 
 def main():

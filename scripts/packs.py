@@ -53,7 +53,7 @@ class Pack:
         self.audit = attributes(file["summary/audit"])
         self.layers = {name: data[:].tolist() for name, data in file["summary/layers"].items()}
         self.provenance = attributes(file["provenance"])
-        self.size = np.array(self.summary["size"], dtype=float)  # lateral extents, then the height asked [m]
+        self.size = np.array(self.summary["size"], dtype=float)  # lateral extents, then the target height [m]
         self.dimension = self.summary["dimension"]
         self.phi, self.phi_bulk = self.summary["phi"], self.summary["phi_bulk"]
         self.pairs = file["contacts/pair"][:] if "contacts" in file else None
@@ -72,7 +72,7 @@ class Pack:
         return self.path.stem
 
     def top(self):
-        """Highest particle top, at least the height asked [m]."""
+        """Highest particle top, at least the target height [m]."""
         vertical = self.dimension - 1
         highest = (self.position[:, vertical] + self.radius).max() if self.count else 0.0
         return max(highest, self.size[vertical])
@@ -112,7 +112,7 @@ def program_here():
     return str(built) if built.exists() else shutil.which("packmpi")
 
 
-def asked_curve(radius):
+def target_curve(radius):
     """Radii [m] and the shares of the number and of the mass up to them, of a scene's [particles.radius]: what
     scene::SizeCurve computes, to be drawn. A jump is two points at one radius."""
     kind, by_mass = radius["distribution"], radius.get("weighting") == "mass"
@@ -155,7 +155,7 @@ def graded(radius):
     return 0.5 * (np.exp(x) if logarithmic else x), percent
 
 
-def got_curve(values):
+def achieved_curve(values):
     """The radii [m] of a pack, ascending, and the shares of number and mass up to each."""
     r = np.sort(values)
     mass = np.cumsum(r ** 3)

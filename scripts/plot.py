@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a pack: density profile, sizes asked and got, pair distribution, how it settled.
+"""Plots of a pack: density profile, sizes target and achieved, pair distribution, how it settled.
 
 usage: scripts/plot.py PACK.hdf [-o FOLDER] [--format png|svg] [--only density sizes pairs settling] [--program packmpi]
 
@@ -51,18 +51,18 @@ def density(pack, analysis):
     axes.annotate(rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}", (0.5 * asked, pack.phi_bulk), (0, -30),
                   textcoords="offset points", ha="center", fontsize=9)
     axes.axvline(asked, color=ACCENT, linestyle=(0, (6, 3)))
-    axes.annotate("height asked", (asked, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
+    axes.annotate("target height", (asked, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
                   va="bottom", color=ACCENT, fontsize=8.5)
     axes.set(xlabel="height [m]", ylabel="solid fraction", xlim=(0.0, max(edges[-1], 1.02 * asked)), ylim=(0.0, None))
     return figure
 
 
 def sizes(pack, _):
-    """What passes a sieve, asked and got, by mass and by number; nothing if all radii are equal."""
+    """What passes a sieve, target and achieved, by mass and by number; nothing if all radii are equal."""
     if np.ptp(pack.radius) == 0.0:
         return None
-    r, *asked = packs.asked_curve(pack.scene()["particles"]["radius"])
-    got_r, *got = packs.got_curve(pack.radius)
+    r, *asked = packs.target_curve(pack.scene()["particles"]["radius"])
+    got_r, *got = packs.achieved_curve(pack.radius)
     figure, axes = new_figure()
     for shares, found, colour, name in zip(asked, got, (OTHER, GOT), ("by number", "by mass")):
         axes.step(2000.0 * np.append(got_r[0], got_r), 100.0 * np.append(0.0, found), where="post", color=colour,
@@ -112,7 +112,7 @@ def settling(pack, _):
         for start in starts[1:]:
             axes.axvline(start, color=OTHER, linewidth=0.6, alpha=0.5)
         axes.grid(axis="x", visible=False)
-    above.axhline(pack.size[-1], color=ACCENT, linewidth=1.2, linestyle=(0, (6, 3)), label="height asked")
+    above.axhline(pack.size[-1], color=ACCENT, linewidth=1.2, linestyle=(0, (6, 3)), label="target height")
     above.plot(time, steps["top"], color=GOT, label="highest top")
     above.plot(time, steps["mean height"], color=OTHER, label="mean height")
     above.set(ylabel="[m]", ylim=(0.0, None))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the height asked.
+"""A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the target height.
 
 usage: scripts/render.py PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed ...] [--size pixels] [--no-chains]
 
@@ -101,7 +101,7 @@ def draw_3d(pack, colouring, path, pixels):
     axes.axis("off")
     colouring.bar(figure, figure.add_axes([(width + 22) / across, 0.14, 16 / across, 0.66]))
     figure.text(12 / across, 1.0 - 10 / up, caption(pack), va="top", fontsize=11, color=INK)
-    figure.text(12 / across, 8 / up, "red: height asked", fontsize=9, color=ACCENT)
+    figure.text(12 / across, 8 / up, "red: target height", fontsize=9, color=ACCENT)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
 
 
@@ -136,7 +136,7 @@ def draw_2d(pack, colouring, path, pixels, chains):
     axes.add_collection(EllipseCollection(
         diameter, diameter, np.zeros(pack.count), units="xy", facecolors=colouring.rgba(), edgecolors=INK,
         linewidths=min(0.6, 0.04 * points), offsets=pack.position[:, :2], transOffset=axes.transData, zorder=2))
-    note = "red: height asked"
+    note = "red: target height"
     if show:
         note += f";  lines: contact forces, mean {chain_lines(pack, axes, 0.1 * points):.2g} N"
     axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)

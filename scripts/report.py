@@ -3,7 +3,7 @@
 
 usage: scripts/report.py PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
 
-Facts, pictures, plots, asked beside got, protocol, checks and provenance. Needs what scripts/setup.sh --render installs;
+Facts, pictures, plots, target beside achieved, protocol, checks and provenance. Needs what scripts/setup.sh --render installs;
 a picture that cannot be drawn is left out, and the page says why. The numbers are those of the pack and of
 `packmpi analyze`; the history is NAME.steps.csv.
 """
@@ -101,7 +101,7 @@ def pictures(pack, folder, pixels):
 
 
 CAPTIONS = {
-    "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the height asked.",
+    "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
     "sizes": "Sizes asked for (dashed) and got, as sieves would show them.",
     "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
     "settling": "How the layers settled; energies are those of the particles that move."}
@@ -142,15 +142,15 @@ def comparison(pack, analysis):
     got, layers = pack.summary, pack.layers
     rows = [["The pack"],
             ["particles", "–", number(pack.count), "–"],
-            ["height [m]", number(got["height_asked"]), number(got["height"], 5),
-             percent(got["height"], got["height_asked"])],
-            ["φ of a layer when inserted", number(got["fraction_asked"]),
-             number(float(np.mean(layers["fraction_got"])), 5),
-             percent(float(np.mean(layers["fraction_got"])), got["fraction_asked"])],
-            ["φ below the height asked", "–", f"{pack.phi:.4f}", "–"],
+            ["height [m]", number(got["target_height"]), number(got["height"], 5),
+             percent(got["height"], got["target_height"])],
+            ["φ of a layer when inserted", number(got["target_fraction"]),
+             number(float(np.mean(layers["achieved_fraction"])), 5),
+             percent(float(np.mean(layers["achieved_fraction"])), got["target_fraction"])],
+            ["φ below the target height", "–", f"{pack.phi:.4f}", "–"],
             ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"]]
     for kind, match in analysis["sizes"].items():
-        asked, there = match["asked"], match["got"]
+        asked, there = match["target"], match["achieved"]
         rows.append([f"Diameters by {kind}"])
         rows += [[f"D<sub>{name[1:]}</sub> [mm]", number(1000.0 * asked[name]), number(1000.0 * there[name]),
                   percent(there[name], asked[name])] for name in asked if name.startswith("d")]
@@ -158,7 +158,7 @@ def comparison(pack, analysis):
                  for name, words in (("cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>"),
                                      ("cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)"))]
         rows.append(["Kolmogorov distance", "–", number(match["distance"], 3), "–"])
-    return table(["", "asked", "got", "difference"], rows, "asked and got")
+    return table(["", "target", "achieved", "difference"], rows, "target and achieved")
 
 
 def protocol(pack):
@@ -171,13 +171,13 @@ def protocol(pack):
         ("duration of a layer", f"{quantity(layers['duration'], 's')} at most"
          if dynamics.get("stop") == "settled" else quantity(layers["duration"], "s")),
         ("window", f"the {number(window)} newest layers move" if window else "none: all move"),
-        ("thaw", f"{number(got['thaws'])}, {number(got['thaw_steps'])} steps" if got["thaws"] else "none"),
+        ("relaxation", f"{number(got['relaxations'])}, {number(got['relaxation_steps'])} steps" if got["relaxations"] else "none"),
         ("simulated", f"{quantity(got['duration'], 's')} in {number(got['steps'])} steps"),
         ("gravity", quantity(scene["jamming"]["gravity"], "m/s²")),
         ("friction, damping", f"{number(scene['contact']['friction'])}, {number(scene['contact']['damping_ratio'])} of critical"),
         ("rotation", "yes" if dynamics.get("rotation", True) else "no"),
         ("ended by", html.escape(got["stop_reason"])),
-        ("creep left", f"{quantity(got['creep'], '1/s', 3)} of φ<sub>bulk</sub>")])
+        ("compaction rate left", f"{quantity(got['compaction_rate'], '1/s', 3)} of φ<sub>bulk</sub>")])
 
 
 def layer_table(pack):
@@ -202,7 +202,7 @@ def checks(pack):
             ["no overlap beyond half a radius", f"{number(audit['worst_overlap'], 3)} at most", verdict(audit["worst_overlap"] > 0.5)],
             ["no wall penetrated beyond half a radius", f"{number(audit['worst_wall_penetration'], 3)} at most",
              verdict(audit["worst_wall_penetration"] > 0.5)],
-            ["the height asked was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
+            ["the target height was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
     return table(["check", "found", "met"], rows, "checks")
 
 
@@ -238,7 +238,7 @@ def page(pack, analysis, pixels):
             f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
             facts(pack, analysis), pictures(pack, folder, pixels),
             section("plots", "What it is like", plots(pack, analysis, folder)),
-            section("asked", "Asked and got", comparison(pack, analysis),
+            section("target", "Target and achieved", comparison(pack, analysis),
                     '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the asked and the got curve.</p>'),
             section("protocol", "Protocol", protocol(pack), layer_table(pack)),
             section("checks", "Checks", checks(pack), ledger(pack)),

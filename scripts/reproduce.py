@@ -113,7 +113,7 @@ class Progress:
         self.work_left -= USUAL_SECONDS[run.example]
         elapsed = time.monotonic() - self.start
         left = elapsed * self.work_left / self.work_done
-        got = run.result()["got"]
+        got = run.result()["achieved"]
         print(f"[{self.count}/{self.total}] {run.title()}: phi {got['phi']:.4f}, phi_bulk {got['phi_bulk']:.4f};  "
               f"{elapsed / 60.0:.1f} min gone, about {left / 60.0:.1f} min left", flush=True)
 
@@ -148,9 +148,9 @@ def make(runs, program, jobs):
 
 def row_of(run, summary):
     """One line of reproduction.csv."""
-    got, audit, made = summary["got"], summary["audit"], summary["provenance"]
+    got, audit, made = summary["achieved"], summary["audit"], summary["provenance"]
     row = {"example": run.example, "rotation": run.rotation, "seed": run.seed, "layers": len(summary["layers"])}
-    for key in ("particles", "phi", "phi_bulk", "height", "top", "creep", "coordination", "rattlers", "mean_overlap",
+    for key in ("particles", "phi", "phi_bulk", "height", "top", "compaction_rate", "coordination", "rattlers", "mean_overlap",
                 "kinetic_energy", "floor_force", "weight", "time_step", "steps", "particle_steps", "reached"):
         row[key] = got[key]
     for key in ("lost", "non_finite", "outside", "worst_overlap", "worst_wall_penetration"):

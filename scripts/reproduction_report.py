@@ -80,9 +80,9 @@ def criteria(cells):
                 found.append((f"{on.example}: {key} with rotation above {key} without",
                               f"{on.mean(key):.4f} and {off.mean(key):.4f}", "on > off", on.mean(key) > off.mean(key)))
     rows = [row for cell in cells for row in cell.rows]
-    sound = [row for row in rows if row["reached"] and not any(row[key] for key in ("lost", "non_finite", "outside"))]
-    found.append(("every run: height reached, nothing lost, nothing outside", f"{len(sound)} of {len(rows)}",
-                  f"{len(rows)}", len(sound) == len(rows)))
+    valid = [row for row in rows if row["reached"] and not any(row[key] for key in ("lost", "non_finite", "outside"))]
+    found.append(("every run: height reached, nothing lost, nothing outside", f"{len(valid)} of {len(rows)}",
+                  f"{len(rows)}", len(valid) == len(rows)))
     return found
 
 
@@ -107,14 +107,14 @@ def density_table(cells):
 
 def state_table(cells):
     heads = ["example", "rotation", "particles", "layers", "height [m]", "contacts a particle", "mean overlap / r",
-             "creep [1/s]", "rattlers", "wall time [s]"]
+             "compaction rate [1/s]", "rattlers", "wall time [s]"]
     rows = []
     for cell in cells:
         layers = sorted({row["layers"] for row in cell.rows})
         rows.append([cell.example, cell.rotation, f"{cell.mean('particles'):.0f}",
                      f"{layers[0]}" if len(layers) == 1 else f"{layers[0]} to {layers[-1]}",
                      f"{cell.mean('height'):.4f}", of_sample(cell.all("coordination"), 2),
-                     f"{cell.mean('mean_overlap'):.1e}", f"{cell.mean('creep'):.1e}", f"{cell.mean('rattlers'):.3f}",
+                     f"{cell.mean('mean_overlap'):.1e}", f"{cell.mean('compaction_rate'):.1e}", f"{cell.mean('rattlers'):.3f}",
                      f"{cell.mean('wall_seconds'):.1f}"])
     return table(heads, rows)
 
@@ -153,8 +153,8 @@ def protocol(rows):
     steps = ", ".join(f"{step:g}" for step in sorted({float(row["time_step"]) for row in rows}))
     versions = ", ".join(sorted({f"{row['version']} ({row['git']})" for row in rows}))
     return f"""Made by packmpi {versions}; time step {steps} s. The scenes are `input/paper_5_1.toml` to
-`paper_5_4.toml`. phi is the solid fraction below the height asked H_d, phi_bulk the same between 0.2 H_d and 0.8 H_d,
-creep is d phi_bulk / dt over the last tenth of the last layer. Values are mean ± standard deviation of a pack over the
+`paper_5_4.toml`. phi is the solid fraction below the target height H_d, phi_bulk the same between 0.2 H_d and 0.8 H_d,
+The compaction rate is d phi_bulk / dt over the last tenth of the last layer. Values are mean ± standard deviation of a pack over the
 seeds. Every run is a line of [data/reproduction.csv](data/reproduction.csv).""".splitlines()
 
 

@@ -65,10 +65,10 @@ log_every = {duration:g}
 """
 
 # Name, lateral extents [m], boundary, ranks, other settings: input/million.toml with another floor. The first are fitted, the last held out.
-SOFT = {"layers.duration": "0.1", "dynamics.thaw": "0.1"}
+SOFT = {"layers.duration": "0.1", "dynamics.relaxation": "0.1"}
 FITTED = [("1m", 1.0, "wall", 1, {}), ("2m", 2.0, "wall", 1, {}), ("loose", 2.0, "wall", 1, SOFT),
-          ("hard", 1.0, "wall", 1, {"dynamics.window": "0", "layers.maximum": "6", "dynamics.thaw": "1.8"}),
-          ("thin", 0.6, "periodic", 2, {"dynamics.thaw": "2.7"}), ("two", 1.0, "periodic", 2, {}), ("loose two", 1.0, "periodic", 2, SOFT),
+          ("hard", 1.0, "wall", 1, {"dynamics.window": "0", "layers.maximum": "6", "dynamics.relaxation": "1.8"}),
+          ("thin", 0.6, "periodic", 2, {"dynamics.relaxation": "2.7"}), ("two", 1.0, "periodic", 2, {}), ("loose two", 1.0, "periodic", 2, SOFT),
           ("two wide", 1.8, "periodic", 2, {})]
 HELD_OUT = [("two apart", 0.8, "periodic", 2, {}), ("two walls", 1.4, "wall", 2, {}), ("six layers", 1.6, "wall", 1, {"layers.maximum": "6"}),
             ("wide", 2.6, "wall", 1, {})]
@@ -80,8 +80,8 @@ class Run:
 
     def __init__(self, summary):
         self.ranks = summary["provenance"]["ranks"]
-        self.steps = summary["got"]["steps"]
-        self.particles = summary["got"]["particles"]
+        self.steps = summary["achieved"]["steps"]
+        self.particles = summary["achieved"]["particles"]
         self.git = summary["provenance"]["git"]
         self.wall = summary["provenance"]["wall_seconds"]
         self.numbers = {**summary["counters"], **summary["costs"]}
@@ -122,7 +122,7 @@ def start(options, name, scene, ranks, settings, repeat=0, limit=None):
     summary = json.loads((folder / f"{Path(scene).stem}.json").read_text())
     if not options.quick:
         kept.write_text(json.dumps({"key": key, "summary": summary}))
-        print(f"{name}: {summary['got']['particles']} particles, {summary['provenance']['wall_seconds']:.1f} s", flush=True)
+        print(f"{name}: {summary['achieved']['particles']} particles, {summary['provenance']['wall_seconds']:.1f} s", flush=True)
     return Run(summary)
 
 

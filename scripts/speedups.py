@@ -36,10 +36,10 @@ def settings(dimension):
         "reference": {},
         "insertion speed 0.3 m/s": down,
         "settled": {"dynamics.stop": "settled"},
-        "window 5, thaw 0.9 s": {"dynamics.window": "5", "dynamics.thaw": "0.9"},
-        "soft layers, thaw 0.9 s": {**soft, "dynamics.thaw": "0.9"},
+        "window 5, relaxation 0.9 s": {"dynamics.window": "5", "dynamics.relaxation": "0.9"},
+        "soft layers, relaxation 0.9 s": {**soft, "dynamics.relaxation": "0.9"},
         "larger step": larger,
-        "A2": {**larger, **down, "layers.duration": "0.35" if dimension == 3 else "0.5", "dynamics.thaw": "0.6" if dimension == 3 else "1.0"},
+        "A2": {**larger, **down, "layers.duration": "0.35" if dimension == 3 else "0.5", "dynamics.relaxation": "0.6" if dimension == 3 else "1.0"},
         "balanced": {"fidelity": "balanced"},
     }
 
@@ -70,7 +70,7 @@ def make(options, scene, name, seed):
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode not in (0, 3):
         sys.exit(f"speedups: {scene}, {name}, seed {seed} ended with exit code {done.returncode}")
-    got = json.loads((folder / f"{file}.json").read_text())["got"]
+    got = json.loads((folder / f"{file}.json").read_text())["achieved"]
     row = {"scene": scene, "setting": name, "seed": seed, "spheres": got["particles"], "particle_steps": got["particle_steps"],
            "cpu_seconds": round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 3),
            "phi_bulk": got["phi_bulk"], "coordination": got["coordination"], "mean_overlap": got["mean_overlap"]}

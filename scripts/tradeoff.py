@@ -37,7 +37,7 @@ ROCK = {"container.size": "[3.0,3.0,2.5]", "container.boundary": '["wall","perio
         "particles.density": "2650.0", "particles.youngs_modulus": "1e9", "contact.friction": "0.5", "contact.damping_ratio": "0.3",
         "drag.coefficient": "0.0", "jamming.gravity": "9.81",
         "particles.radius": '{distribution="lognormal",median=0.1,log_sd=0.2,min=0.065,max=0.15,weighting="mass"}'}
-# Another one: a uniform grading by mass, lighter, softer, less rough, less damped, a higher pile.
+# Another one: a uniform grading by mass, lighter, softer, less rough, less damped, a higher bed.
 GRAVEL = {"container.size": "[2.5,2.0,2.0]", "container.boundary": '["periodic","wall"]', "layers.maximum": "10", "layers.thickness": "0.5",
           "particles.density": "1800.0", "particles.youngs_modulus": "3e8", "particles.poisson_ratio": "0.2", "contact.friction": "0.35",
           "contact.damping_ratio": "0.2", "drag.coefficient": "0.0", "jamming.gravity": "9.81",
@@ -140,11 +140,11 @@ KNOBS = {
     "layers": {"layers 0.75 times as thick": layers("thickness", 0.75), "layers twice as thick": layers("thickness", 2.0),
                "phi_0 halved": layers("fraction", 0.5), "phi_0 0.8 times": layers("fraction", 0.8)},
     "stiffness": {"E 1e7 throughout": {"particles.youngs_modulus": "1e7"},
-                  **{f"E {e} in layers, hardened in 0.9 s": {"layers.youngs_modulus": e, "dynamics.thaw": "0.9"} for e in ("3e7", "1e7", "3e6")}},
+                  **{f"E {e} in layers, hardened in 0.9 s": {"layers.youngs_modulus": e, "dynamics.relaxation": "0.9"} for e in ("3e7", "1e7", "3e6")}},
     "friction": {"friction viscous, slip time 2e-4": viscous("2e-4"), "friction viscous, slip time 1e-3": viscous("1e-3"),
                  "friction without a cap": {"contact.regularisation": "none"}},
-    "window": {f"window {k}, thaw 0.9 s": {"dynamics.window": k, "dynamics.thaw": "0.9"} for k in ("2", "3", "5")},
-    "thaw": {f"window 3, thaw {t} s": {"dynamics.window": "3", "dynamics.thaw": t} for t in ("0.2", "0.5", "2.0")},
+    "window": {f"window {k}, relaxation 0.9 s": {"dynamics.window": k, "dynamics.relaxation": "0.9"} for k in ("2", "3", "5")},
+    "relaxation": {f"window 3, relaxation {t} s": {"dynamics.window": "3", "dynamics.relaxation": t} for t in ("0.2", "0.5", "2.0")},
     "implicit": {f"theta {theta}, dt {dt}": {"dynamics.theta": theta, "dynamics.time_step": dt}
                  for theta, dt in (("0.5", "2e-4"), ("0.5", "5e-4"), ("1", "5e-4"), ("1", "1e-3"), ("1", "2e-3"), ("1", "5e-3"))},
     "speed": {f"inserted at {v} m/s": down(v) for v in ("0.3", "0.6", "1.0")},
@@ -216,19 +216,19 @@ def make(options, scene, setting, values, seed):
         return row
     got = json.loads((folder / f"{file}.json").read_text())
     row["contact_evaluations"] = got["counters"]["pair_steps"]["sum"]
-    layers, got, audit, asked = got["layers"], got["got"], got["audit"], got["asked"]
-    row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "creep", "thaws",
+    layers, got, audit, asked = got["layers"], got["achieved"], got["audit"], got["target"]
+    row |= {key: got[key] for key in ("particles", "height", "phi", "phi_bulk", "coordination", "rattlers", "mean_overlap", "compaction_rate", "relaxations",
                                       "particle_steps")}
     row |= {"layers": len(layers), "largest_overlap": audit["worst_overlap"], "floor_over_weight": got["floor_force"] / got["weight"],
             "kinetic_per_mgd": got["kinetic_energy"] / (got["weight"] * 2.0 * got["mean_radius"])}
-    row["sunk"] = (got["height_before_thaw"] - got["height"]) / got["height"] * len(layers) if got["thaws"] else 0.0
-    row |= curves(options, folder / f"{file}.hdf", asked["height_asked"])
+    row["sunk"] = (got["height_before_relaxation"] - got["height"]) / got["height"] * len(layers) if got["relaxations"] else 0.0
+    row |= curves(options, folder / f"{file}.hdf", asked["target_height"])
     return {key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()}
 
 
 COLUMNS = ["scene", "setting", "seed", "commit", "exit", "particles", "layers", "height", "phi", "phi_bulk", "coordination", "held_coordination",
-           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "creep", "particle_steps",
-           "contact_evaluations", "cpu_seconds", "thaws", "sunk",
+           "rattlers", "mean_overlap", "largest_overlap", "floor_over_weight", "kinetic_per_mgd", "compaction_rate", "particle_steps",
+           "contact_evaluations", "cpu_seconds", "relaxations", "sunk",
            "profile", "g", "forces", "options", "words"]
 
 

@@ -129,7 +129,7 @@ def presets(rows, scenes, reference):
 
 def sinking(rows):
     """Of a mean layer's rise, the most; how many packs needed a second final stage."""
-    twice = sum(number(row, "thaws") > 1 for row in rows)
+    twice = sum(number(row, "relaxations") > 1 for row in rows)
     return f"{max(number(row, 'sunk') for row in rows):.2f}" + (f"; {twice} twice" if twice else "")
 
 

@@ -23,7 +23,7 @@ struct PackResult {
   std::string file;   ///< path of the pack file (doc/file_format.md)
   std::int64_t particles = 0;
   double height = 0.0;        ///< [m]
-  double phi = 0.0;           ///< solid fraction below the height asked for (CC16 eq. 22)
+  double phi = 0.0;           ///< solid fraction below the target height (CC16 eq. 22)
   double phi_bulk = 0.0;      ///< solid fraction between 0.2 and 0.8 of that height
   double coordination = 0.0;  ///< mean touching particles
 };

@@ -8,7 +8,7 @@
 namespace packmpi::random {
 
 /// What a draw is for; each purpose is an independent stream. Values are below 2^8.
-enum class Purpose : std::uint32_t { radius = 1, dart = 2, test = 3 };
+enum class Purpose : std::uint32_t { radius = 1, trial = 2, test = 3 };
 
 /// The name of a draw. Two names within the bounds below never share a Philox counter.
 struct Name {
@@ -16,7 +16,7 @@ struct Name {
   Purpose purpose;
   std::uint32_t layer;     ///< 0 .. ; below 2^24
   std::uint64_t particle;  ///< index of the particle in its layer, below 2^48
-  std::uint32_t attempt;   ///< 0 .. ; a dart, or a trial of a rejection method
+  std::uint32_t attempt;   ///< 0 .. ; a trial, or a trial of a rejection method
 };
 
 /// Two 64-bit words of the stream `name`: its first block. Bounds are asserted. Cost: one Philox block, 10 ns.

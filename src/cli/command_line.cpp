@@ -45,7 +45,7 @@ void declare_run(CLI::App& app, Request& request) {
       ->capture_default_str()
       ->type_name("FOLDER");
   app.add_flag("--force", request.run.force, "replace outputs that exist");
-  app.add_option("--restart", request.run.restart, "go on from a checkpoint: auto (the newest sound one) or its file")
+  app.add_option("--restart", request.run.restart, "go on from a checkpoint: auto (the newest valid one) or its file")
       ->type_name("auto|FILE");
   app.add_option("--max-hours", request.run.max_hours, "write a checkpoint and end (code 75) before so much wall time")
       ->check(CLI::PositiveNumber)
@@ -107,9 +107,9 @@ void read_copies(const std::string& text, std::array<int, 2>& copies) {
   std::istringstream words(text);
   char comma = ',';
   copies = {0, 1};
-  const bool sound = words >> copies[0] && (words.eof() || (words >> comma && comma == ',' && words >> copies[1])) &&
+  const bool valid = words >> copies[0] && (words.eof() || (words >> comma && comma == ',' && words >> copies[1])) &&
                      (words >> std::ws).eof() && copies[0] > 0 && copies[1] > 0;
-  if (!sound) throw CLI::ValidationError("--replicate", fmt::format("\"{}\" is not NX,NY, two counts from 1 on", text));
+  if (!valid) throw CLI::ValidationError("--replicate", fmt::format("\"{}\" is not NX,NY, two counts from 1 on", text));
 }
 
 void declare_convert(CLI::App& app, Request& request) {
@@ -124,7 +124,7 @@ void declare_convert(CLI::App& app, Request& request) {
          [&conversion](const std::string& word) {
            conversion.trim = word == trims[0] ? exporters::Trim::drop : exporters::Trim::cut;
          },
-         "leave out particles above the height asked: those that reach above it (drop), or those with their centre "
+         "leave out particles above the target height: those that reach above it (drop), or those with their centre "
          "above it (cut)")
       ->check(CLI::IsMember(std::vector<std::string>(trims.begin(), trims.end())))
       ->type_name("drop|cut");
@@ -180,7 +180,7 @@ void declare_estimate(CLI::App& app, Request& request) {
          "--floor", [&question](const std::string& text) { read_sides(text, question.sides); },
          "sides of the floor, instead of the scene's [m]; one that is the word open is found")
       ->type_name("L,B");
-  app.add_option("--fraction", question.fraction, "solid fraction of the pile, instead of the estimate")
+  app.add_option("--fraction", question.fraction, "solid fraction of the bed, instead of the estimate")
       ->check(CLI::Range(0.01, 0.99))
       ->type_name("F");
   app.add_option("--ranks", question.ranks, "that the run is to have; without it, those that are here")

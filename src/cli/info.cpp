@@ -15,7 +15,7 @@ namespace {
 std::string describe(const std::string& path, const pack::RunState& state) {
   constexpr std::array<const char*, 3> phases{"before an insertion", "settling", "final stage"};
   return fmt::format(
-      "{}: a checkpoint, sound\n  layer {}, {}, step {} ({} of this phase)\n  {} particles in {}D, {}\n  serial {}, by "
+      "{}: a checkpoint, valid\n  layer {}, {}, step {} ({} of this phase)\n  {} particles in {}D, {}\n  serial {}, by "
       "packmpi "
       "{} ({})\n",
       path, state.first_ids.size(), phases.at(static_cast<std::size_t>(state.phase)), state.steps, state.done,

@@ -54,9 +54,9 @@ std::string manual_page() {
       ".SH NAME\npackmpi \\- dense random packs of spheres for DEM, on any number of MPI ranks\n"
       ".SH SYNOPSIS\n\\fBpackmpi\\fR [\\fICOMMAND\\fR] \\fISCENE.toml\\fR [\\fIOPTION\\fR]...\n.br\n"
       "\\fBmpirun \\-n\\fR \\fIN\\fR \\fBpackmpi\\fR \\fISCENE.toml\\fR [\\fIOPTION\\fR]...\n"
-      ".SH DESCRIPTION\nLoose layers of spheres are inserted at random above the pile and settle under gravity, one "
+      ".SH DESCRIPTION\nLoose layers of spheres are inserted at random above the bed and settle under gravity, one "
       "after "
-      "the other,\nuntil the height asked for is filled.\nOne scene file gives one pack: the same bits on any number "
+      "the other,\nuntil the target height is filled.\nOne scene file gives one pack: the same bits on any number "
       "of "
       "ranks, and after any restart.\nWithout a command, \\fBrun\\fR is meant.\n.SH COMMANDS\n";
   for (const CommandWords& command : command_words()) out += section(command);

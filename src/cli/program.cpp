@@ -41,12 +41,12 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
   if (comm.rank() == 0) {
     const auto [nx, ny] = ownership.grid().counts();
     fmt::print(
-        "{}\n# {} is sound.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
+        "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         std::int64_t{nx} * ny,
         scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
-    fmt::print("# time step of layers {:g} s, thaw {:g} s\n", scene.settling.time_step, scene.thaw);
+    fmt::print("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
     fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);
     for (const std::string& line : input::preset_in_use(scene.in)) fmt::print("#   {}\n", line);
   }

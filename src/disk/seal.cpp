@@ -42,7 +42,7 @@ constexpr std::uint64_t stir(std::uint64_t x) {
 
 [[noreturn]] void refuse_seal() {
   refuse_seal(
-      "there is no sound seal at its end: it is cut off, damaged, not a file of packmpi, or of another version");
+      "there is no valid seal at its end: it is cut off, damaged, not a file of packmpi, or of another version");
 }
 
 [[noreturn]] void refuse_contents() {

@@ -1,4 +1,4 @@
-/// What no sound run shows (doc/theory.md, "Guards"): how it is found, and the one message about it.
+/// What no valid run shows (doc/theory.md, "Guards"): how it is found, and the one message about it.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -40,7 +40,7 @@ struct Inspected {
 /// contact law is for.
 inline constexpr double deepest_overlap = 0.5;
 
-/// Fastest sound motion in this stage [m/s]: the scene's bound, and half a smallest radius a step.
+/// Fastest valid motion in this stage [m/s]: the scene's bound, and half a smallest radius a step.
 [[nodiscard]] double speed_limit(const scene::Scene& scene, const scene::Stage& stage);
 
 /// The worst owned particle by the gravest fault; equals: the smallest id. Local. Cost: O(owned + pairs), about a step.

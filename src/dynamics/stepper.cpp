@@ -76,7 +76,7 @@ void Stepper::check(const particles::Store& store, const neighbor::Neighborhood&
 }
 
 // From what the kernel tells anyway. Its speed is a bound, so particles are looked at only beyond the limit. An overlap
-// beyond the deepest while two close in gives a force beyond pressing_force_; so do sound impacts of large particles,
+// beyond the deepest while two close in gives a force beyond pressing_force_; so do valid impacts of large particles,
 // so it is not looked again at once unless the force doubles.
 neighbor::Alarm Stepper::alarm_of_step(const particles::Store& store) const {
   if (!last_.in_range || !near_in_range_) return neighbor::Alarm::fault;

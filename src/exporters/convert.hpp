@@ -10,7 +10,7 @@
 
 namespace packmpi::exporters {
 
-/// What becomes of particles that are higher than the height asked, H_d.
+/// What becomes of particles that are higher than the target height, H_d.
 enum class Trim {
   none,
   drop,  ///< every particle that reaches above H_d is left out

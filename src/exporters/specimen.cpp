@@ -23,9 +23,9 @@ double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * ra
 bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 void check(const pack::ParticleRow& row, double largest) {
-  const bool sound =
+  const bool valid =
       finite(row.position) && finite(row.velocity) && finite(row.spin) && row.radius > 0.0 && row.radius <= largest;
-  if (!sound) {
+  if (!valid) {
     throw Error(ExitCode::io_failure, fmt::format("particle {} has numbers that cannot be", row.id - 1));
   }
 }

@@ -21,7 +21,7 @@ namespace packmpi::forecast {
 namespace {
 
 constexpr double probe_seconds = 1.0;
-constexpr int turns = 3;        // walls and surface make a pile looser: the fraction depends on what is looked for
+constexpr int turns = 3;        // walls and surface make a bed looser: the fraction depends on what is looked for
 constexpr double margin = 0.5;  // of a layer, by which the last one rises above a height that is found
 constexpr double step_row_bytes = 190.0;  // of NAME.steps.csv, about (doc/estimate.md)
 // Memory of a rank (doc/estimate.md): the program and its libraries; what lists add to a particle; slack of arrays
@@ -34,7 +34,7 @@ constexpr double writing_bytes = 400.0;
 
 [[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_input, "estimate: " + words); }
 
-scene::PileFraction fraction_of(const scene::Scene& scene, const Question& question) {
+scene::BedFraction fraction_of(const scene::Scene& scene, const Question& question) {
   if (question.fraction) return {*question.fraction, 0.0};
   return scene::expected_fraction(scene);
 }
@@ -193,8 +193,8 @@ report::LayerRow some_row() {
   return {.inserted = 1000,
           .total = 1000,
           .attempts = 1000,
-          .fraction_asked = 0.25,
-          .fraction_got = digits,
+          .target_fraction = 0.25,
+          .achieved_fraction = digits,
           .region_bottom = digits,
           .height = digits,
           .top = digits,
@@ -208,7 +208,7 @@ report::LayerRow some_row() {
 
 void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estimate& e) {
   const auto rows = static_cast<std::size_t>(e.layers.value);
-  report::RunRecord record = run::asked(comm, scene);
+  report::RunRecord record = run::targets_of(comm, scene);
   record.stop_reason = "height";
   record.layers.assign(rows, some_row());
   std::optional<std::int64_t> contacts;
@@ -232,7 +232,7 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   e.step_log_bytes = std::llround(step_row_bytes * std::max(1.0, e.duration / interval));
 }
 
-void add_counts(const scene::Scene& scene, const scene::PileFraction& fraction, report::Estimate& e) {
+void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, report::Estimate& e) {
   const auto layers = [&](double shift) {
     return scene::expected_layers(scene, std::clamp(fraction.value + shift, 1e-3, 1.0));
   };
@@ -249,10 +249,10 @@ void add_counts(const scene::Scene& scene, const scene::PileFraction& fraction, 
 
 void add_steps(const scene::Scene& scene, report::Estimate& e) {
   const std::int64_t layer = run::steps_of(scene, run::Part::layer);
-  e.thaw_steps = scene.thaw > 0.0 ? run::steps_of(scene, run::Part::thaw) : 0;
-  e.steps = e.layers.value * layer + e.thaw_steps;
+  e.relaxation_steps = scene.relaxation > 0.0 ? run::steps_of(scene, run::Part::relaxation) : 0;
+  e.steps = e.layers.value * layer + e.relaxation_steps;
   e.duration = static_cast<double>(e.layers.value * layer) * scene.settling.time_step +
-               static_cast<double>(e.thaw_steps) * scene.time_step;
+               static_cast<double>(e.relaxation_steps) * scene.time_step;
   e.particle_steps = particle_steps_of(scene, e.layers.value, e.a_layer);
   e.at_most = scene.in.dynamics.stop == input::StopRule::settled;
 }
@@ -286,8 +286,8 @@ std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, s
   const std::int64_t window = scene.in.dynamics.window;
   const std::int64_t growing = window > 0 ? std::min(layers, window) : layers;  // layers in which more and more move
   const std::int64_t moved = growing * (growing + 1) / 2 + growing * (layers - growing);
-  const std::int64_t thaw = scene.thaw > 0.0 ? layers * run::steps_of(scene, run::Part::thaw) : 0;
-  return a_layer * (moved * run::steps_of(scene, run::Part::layer) + thaw);
+  const std::int64_t relaxation = scene.relaxation > 0.0 ? layers * run::steps_of(scene, run::Part::relaxation) : 0;
+  return a_layer * (moved * run::steps_of(scene, run::Part::layer) + relaxation);
 }
 
 report::Estimate estimate(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides,
@@ -295,7 +295,7 @@ report::Estimate estimate(const comm::Comm& comm, const std::string& path, const
   Unknown unknown{};
   const scene::Scene scene = solved(comm, {path, overrides}, question, unknown);
   constexpr std::array<const char*, 3> names{"particles", "height", "floor"};
-  const scene::PileFraction fraction = fraction_of(scene, question);
+  const scene::BedFraction fraction = fraction_of(scene, question);
   report::Estimate e;
   e.scene_file = path;
   e.found = names.at(static_cast<std::size_t>(unknown));

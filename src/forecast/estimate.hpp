@@ -17,7 +17,7 @@ struct Question {
   std::optional<std::int64_t> particles{};
   std::optional<double> height{};              ///< [m] H_d
   std::vector<std::optional<double>> sides{};  ///< [m] of the floor, none: open; empty: those of the scene
-  std::optional<double> fraction{};            ///< [-] of the pile, instead of the estimate
+  std::optional<double> fraction{};            ///< [-] of the bed, instead of the estimate
   int ranks = 0;                               ///< 0: those that are here
   bool probe = true;
   bool json = false;

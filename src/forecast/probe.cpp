@@ -5,7 +5,7 @@
 
 #include "base/timer.hpp"
 #include "rsa/insert.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
 
@@ -41,28 +41,28 @@ struct Clock {
   double inserting = 0.0, settling = 0.0;  // [s]
 };
 
-void insert(run::Pile& pile, Clock& clock) {
+void insert(run::Bed& bed, Clock& clock) {
   const Stopwatch watch;
-  pile.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
-                                .bottom = pile.top(),
-                                .thickness = pile.scene.in.layers.thickness,
-                                .first_id = pile.count};
-  pile.first_ids.push_back(pile.count);
-  pile.count += rsa::insert(pile.comm, pile.scene, pile.ownership, region, pile.store).inserted;
+  bed.store.set_ghosts(0);
+  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.first_ids.size()),
+                                .bottom = bed.top(),
+                                .thickness = bed.scene.in.layers.thickness,
+                                .first_id = bed.count};
+  bed.first_ids.push_back(bed.count);
+  bed.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
   clock.inserting += watch.seconds();
 }
 
 // A layer's steps, or as many as there is time for.
-void settle_for(run::Pile& pile, double seconds, Clock& clock) {
+void settle_for(run::Bed& bed, double seconds, Clock& clock) {
   const Stopwatch watch;
-  const std::int64_t most = steps_of(pile.scene, run::Part::layer);
-  const std::int64_t chunk = pile.scene.in.dynamics.theta > 0.0 ? implicit_steps : explicit_steps;
-  pile.balance();
+  const std::int64_t most = steps_of(bed.scene, run::Part::layer);
+  const std::int64_t chunk = bed.scene.in.dynamics.theta > 0.0 ? implicit_steps : explicit_steps;
+  bed.balance();
   for (std::int64_t done = 0; done < most && watch.seconds() < seconds;) {
     const std::int64_t next = std::min(chunk, most - done);
-    pile.stepper.advance(pile.store, pile.neighborhood, next, pile.moment());
-    pile.steps += next;
+    bed.stepper.advance(bed.store, bed.neighborhood, next, bed.moment());
+    bed.steps += next;
     done += next;
   }
   clock.settling += watch.seconds();
@@ -73,18 +73,18 @@ void settle_for(run::Pile& pile, double seconds, Clock& clock) {
 report::Probe probe(const scene::Scene& scene, double seconds) {
   const comm::Comm alone(MPI_COMM_SELF);
   const scene::Scene small = small_scene(scene);
-  run::Pile pile(alone, small);
-  pile.stepper.use(small.settling);
+  run::Bed bed(alone, small);
+  bed.stepper.use(small.settling);
   Clock clock;
   for (int layer = 0; layer < probe_layers; ++layer) {
-    insert(pile, clock);
-    settle_for(pile, seconds / probe_layers, clock);
+    insert(bed, clock);
+    settle_for(bed, seconds / probe_layers, clock);
   }
-  return {.particles = pile.count,
-          .steps = pile.steps,
+  return {.particles = bed.count,
+          .steps = bed.steps,
           .seconds = clock.inserting + clock.settling,
-          .particle_steps_per_second = static_cast<double>(pile.particle_steps()) / clock.settling,
-          .insertions_per_second = static_cast<double>(pile.count) / clock.inserting};
+          .particle_steps_per_second = static_cast<double>(bed.particle_steps()) / clock.settling,
+          .insertions_per_second = static_cast<double>(bed.count) / clock.inserting};
 }
 
 }  // namespace packmpi::forecast

@@ -249,12 +249,13 @@ void check_stages(const Case& scene) {
                  fmt::format("{:g} Pa is above particles.youngs_modulus = {:g} Pa; layers settle softer or alike",
                              modulus, scene.in.particles.youngs_modulus));
   }
-  const auto thaw = scene.in.dynamics.thaw;
-  if (!thaw) return;
-  if (*thaw == 0.0 && modulus < scene.in.particles.youngs_modulus) {
-    scene.refuse("dynamics.thaw", "softer layers harden in it; give a time, or remove layers.youngs_modulus");
+  const auto relaxation = scene.in.dynamics.relaxation;
+  if (!relaxation) return;
+  if (*relaxation == 0.0 && modulus < scene.in.particles.youngs_modulus) {
+    scene.refuse("dynamics.relaxation", "softer layers harden in it; give a time, or remove layers.youngs_modulus");
   }
-  if (*thaw > 0.0) check_step(scene, "dynamics.time_step", scene.in.dynamics.time_step, "dynamics.thaw", *thaw);
+  if (*relaxation > 0.0)
+    check_step(scene, "dynamics.time_step", scene.in.dynamics.time_step, "dynamics.relaxation", *relaxation);
 }
 
 void check_features(const Case& scene) {

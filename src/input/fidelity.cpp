@@ -19,8 +19,8 @@ struct Protocol {
   double duration = 0.0;  ///< [s] of a layer
   double speed = 0.0;     ///< [m/s] at insertion, downward
   int window = 0;
-  double thaw = 0.0;     ///< [s]
-  double modulus = 0.0;  ///< [Pa] while layers settle
+  double relaxation = 0.0;  ///< [s]
+  double modulus = 0.0;     ///< [Pa] while layers settle
 };
 
 // Times of presets are in t, that of a fall through a layer's region, speeds in sqrt(2 g h_0) = g t.
@@ -35,7 +35,8 @@ double within(double value, double low, double high) { return std::fmax(low, std
 /// How soft layers may settle.
 struct Softness {
   double share;   ///< of the particles' modulus
-  double weight;  ///< modulus over rho g H_d, the stress of a solid pile on its floor: less, and it bursts in the thaw
+  double weight;  ///< modulus over rho g H_d, the stress of a solid bed on its floor: less, and it bursts in the final
+                  ///< relaxation
 };
 
 /// At least `wanted` [Pa]; that of the particles if it would gain little to soften them.
@@ -51,8 +52,8 @@ double softened(const Input& in, const Softness& softness, double wanted) {
 struct Flat {
   double duration, speed;
   int window;
-  double thaw;  ///< for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
-  double least_thaw;
+  double relaxation;  ///< for each h_0 of H_d: the deeper a bed, the longer it takes to find its rest
+  double least_relaxation;
 };
 
 Protocol in_plane(const Input& in, const Flat& flat) {
@@ -61,11 +62,11 @@ Protocol in_plane(const Input& in, const Flat& flat) {
   return {.duration = flat.duration * t,
           .speed = flat.speed * in.jamming.gravity * t,
           .window = flat.window,
-          .thaw = std::max(flat.least_thaw, flat.thaw * layers) * t,
+          .relaxation = std::max(flat.least_relaxation, flat.relaxation * layers) * t,
           .modulus = soft ? softened(in, {0.1, 5e3}, 0.0) : in.particles.youngs_modulus};
 }
 
-/// What a pile is to creep by over what it creeps by under "paper".
+/// What a bed is to creep by over what it creeps by under "paper".
 struct Creep {
   double multiple;     ///< at d = h_0 and the usual friction
   double by_size;      ///< power of d / h_0
@@ -80,8 +81,8 @@ struct Spatial {
   double shortest;  ///< of a layer
   double depth;     ///< of the window, in particle diameters
   int least_window;
-  double thaw;
-  double thaw_of_layer;  ///< and more for each h_0 of H_d: the deeper a pile, the longer it takes to find its rest
+  double relaxation;
+  double relaxation_of_layer;  ///< and more for each h_0 of H_d: the deeper a bed, the longer it takes to find its rest
   Softness softness;
 };
 
@@ -93,22 +94,22 @@ double over_paper(const Input& in, const Creep& creep, double diameter) {
          elementary::power(usual / friction, creep.by_friction);
 }
 
-/// A pile under "stop" creeps with the step: within one its weight gives a resting contact a slip of g dt^2, so that in
+/// A bed under "stop" creeps with the step: within one its weight gives a resting contact a slip of g dt^2, so that in
 /// a time T it creeps by g dt T, and the denser it is the more it has crept. "paper" gives a layer 1 s at steps of 1e-4
 /// s, 1e-3 t^2 in its examples, and all that lies below as much again: (n + 1) / 2 times that for the mean particle of
 /// n layers. Here it moves in fewer layers, in larger steps, for shorter (doc/theory.md, "Presets"). Where the shortest
-/// layers would let it creep by too much, the thaw is a little shorter.
+/// layers would let it creep by too much, the final relaxation is a little shorter.
 Protocol in_space(Input in, const Spatial& rule) {
-  constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5, least_thaw = 0.95;
+  constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5, least_relaxation = 0.95;
   constexpr int most_window = 1000;
   const double t = fall(in), h = in.layers.thickness, height = in.container.size.back();
   const RadiusRange radii = radius_range(in.particles.radius);
   const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
-  const double rise = h * in.layers.fraction / settled_fraction;  // of the pile by a layer
+  const double rise = h * in.layers.fraction / settled_fraction;  // of the bed by a layer
   Protocol p{
       .speed = rule.speed * in.jamming.gravity * t,
       .window = static_cast<int>(within(std::ceil(rule.depth * diameter / rise), rule.least_window, most_window)),
-      .thaw = (rule.thaw + rule.thaw_of_layer * height / h) * t,
+      .relaxation = (rule.relaxation + rule.relaxation_of_layer * height / h) * t,
       .modulus = in.particles.youngs_modulus};
   in.layers.velocity[in.container.size.size() - 1] = -p.speed;
   const double layers = std::max(height / rise, 1.0);
@@ -116,21 +117,23 @@ Protocol in_space(Input in, const Spatial& rule) {
   const double settlings = moving - moving * (moving - 1.0) / (2.0 * layers);  // in how many the mean particle moves
   const double step = automatic_step(in, radii, p.modulus);
   const double creep = over_paper(in, rule.creep, diameter) * 0.5 * (layers + 1.0) * paper * t * t;
-  const double left = creep - p.thaw * step;                           // for the layers
-  const double ratio = left / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the thaw
+  const double left = creep - p.relaxation * step;  // for the layers
+  const double ratio =
+      left / (settlings * rule.duration * t) / step;  // wanted step of layers over that of the final relaxation
   const double wanted =
       ratio > 1.0 ? p.modulus / (ratio * ratio * std::sqrt(ratio)) : p.modulus;  // dt goes with E^-0.4
   p.modulus = softened(in, rule.softness, wanted);
   const double of_layers = settlings * automatic_step(in, radii, p.modulus);  // creep over their duration
   p.duration = within(left / (of_layers * t), rule.shortest, longest) * t;
-  p.thaw = within((creep - of_layers * p.duration) / step, least_thaw * p.thaw, p.thaw);
+  p.relaxation = within((creep - of_layers * p.duration) / step, least_relaxation * p.relaxation, p.relaxation);
   return p;
 }
 
 /// All measured and chosen with scripts/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the rotation:
 /// with it particles roll past each other as well.
 Protocol draft(const Input& in) {
-  if (flat(in)) return in_plane(in, {.duration = 0.9, .speed = 0.5, .window = 5, .thaw = 0.4, .least_thaw = 1.0});
+  if (flat(in))
+    return in_plane(in, {.duration = 0.9, .speed = 0.5, .window = 5, .relaxation = 0.4, .least_relaxation = 1.0});
   const bool rolls = in.dynamics.rotation;
   return in_space(in, {.speed = 0.6,
                        .creep = rolls ? Creep{1.65, 0.5, 0.25} : Creep{0.75, 0.0, 0.35},
@@ -138,8 +141,8 @@ Protocol draft(const Input& in) {
                        .shortest = 0.6,
                        .depth = 3.5,
                        .least_window = 3,
-                       .thaw = 0.55,
-                       .thaw_of_layer = 0.1,
+                       .relaxation = 0.55,
+                       .relaxation_of_layer = 0.1,
                        .softness = {0.03, 1.3e3}});
 }
 
@@ -147,16 +150,17 @@ Protocol balanced(const Input& in) {
   constexpr double rest = 2.4;  // particles harden in half of it
   const bool rolls = in.dynamics.rotation;
   if (flat(in) && rolls)
-    return in_plane(in, {.duration = 1.2, .speed = 0.5, .window = 6, .thaw = 0.9, .least_thaw = rest});
-  if (flat(in)) return in_plane(in, {.duration = 0.7, .speed = 0.75, .window = 5, .thaw = 0.58, .least_thaw = rest});
+    return in_plane(in, {.duration = 1.2, .speed = 0.5, .window = 6, .relaxation = 0.9, .least_relaxation = rest});
+  if (flat(in))
+    return in_plane(in, {.duration = 0.7, .speed = 0.75, .window = 5, .relaxation = 0.58, .least_relaxation = rest});
   return in_space(in, {.speed = rolls ? 0.3 : 0.2,
                        .creep = rolls ? Creep{2.45, 0.5, 0.25} : Creep{1.14, 0.15, 0.35},
                        .duration = rolls ? 0.8 : 0.75,
                        .shortest = 0.7,
                        .depth = 5.6,
                        .least_window = 5,
-                       .thaw = rolls ? 1.9 : 2.0,
-                       .thaw_of_layer = 0.18,
+                       .relaxation = rolls ? 1.9 : 2.0,
+                       .relaxation_of_layer = 0.18,
                        .softness = {0.06, 2e3}});
 }
 
@@ -178,7 +182,7 @@ std::vector<PresetValue> preset(const Input& in) {
                                   {"layers.velocity", downward(in, protocol.speed)},
                                   {"dynamics.time_step", "auto"},
                                   {"dynamics.window", std::to_string(protocol.window)},
-                                  {"dynamics.thaw", rounded(protocol.thaw)}};
+                                  {"dynamics.relaxation", rounded(protocol.relaxation)}};
   const bool soft = protocol.modulus < in.particles.youngs_modulus;
   if (soft) values.push_back({"layers.youngs_modulus", rounded(protocol.modulus)});
   return values;

@@ -64,7 +64,7 @@ struct Layers {
   HeightRule height = HeightRule::surface;
   Vec3 velocity{};            ///< [m/s] at insertion
   Vec3 spin{};                ///< [rad/s] at insertion; 2D: only z
-  std::int64_t attempts = 0;  ///< darts a particle may throw before RSA gives up
+  std::int64_t attempts = 0;  ///< trials a particle may have before RSA gives up
   std::int64_t maximum = 0;   ///< layers at most; 0: no limit but the program's own bound
 };
 
@@ -100,8 +100,8 @@ struct Dynamics {
   StopRule stop = StopRule::duration;
   double settled_energy = 0.0, settled_drift = 0.0, settled_force = 0.0;  ///< [-] limits of "settled"
   double settled_hold = 0.0;                                              ///< [s] for which all must hold
-  int window = 0;              ///< newest layers that move; 0: all
-  std::optional<double> thaw;  ///< [s] of the final stage; none: "auto"
+  int window = 0;                                                         ///< newest layers that move; 0: all
+  std::optional<double> relaxation;                                       ///< [s] of the final stage; none: "auto"
 };
 
 struct Parallel {

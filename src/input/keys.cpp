@@ -192,13 +192,13 @@ std::vector<Key> layer_keys() {
   const auto layers = &Input::layers;
   return {
     real("layers.thickness", at(layers, &Layers::thickness), length, above(0), mandatory,
-         "Height h_0 of the region above the pile that a layer is inserted into; the paper takes 0.2 H_d."),
+         "Height h_0 of the region above the bed that a layer is inserted into; the paper takes 0.2 H_d."),
     real("layers.fraction", at(layers, &Layers::fraction), ratio, inside(0, 1), mandatory,
          "Solid fraction phi_0 of that region after insertion. Random insertion ends at 0.547 in 2D, 0.384 in 3D."),
     real("layers.duration", at(layers, &Layers::duration), time, above(0), "1.0",
          "Simulated time of dynamics after each layer, at most."),
     real("layers.youngs_modulus", at(layers, &Layers::youngs_modulus), pressure, above(0), "auto",
-         "Modulus while layers settle; softer takes larger steps, and hardens in the thaw. \"auto\": that of the particles."),
+         "Modulus while layers settle; softer takes larger steps, and hardens in the final relaxation. \"auto\": that of the particles."),
     real("layers.time_step", at(layers, &Layers::time_step), time, above(0), "auto",
          "Time step while layers settle; \"auto\": dynamics.time_step, or for softer particles the limit of eq. (23)."),
     word("layers.height", at(layers, &Layers::height), "surface",
@@ -275,8 +275,8 @@ std::vector<Key> dynamics_keys() {
     when(settled, real("dynamics.settled_hold", at(dynamics, &Dynamics::settled_hold), time, above(0), "0.05",
          "... for so long. All are looked at ten times in this time.")),
     whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
-         "So many of the newest layers move; older ones stand still, as walls to them, until the thaw. 0: all move."),
-    real("dynamics.thaw", at(dynamics, &Dynamics::thaw), time, at_least(0), "auto",
+         "So many of the newest layers move; older ones stand still, as walls to them, until the final relaxation. 0: all move."),
+    real("dynamics.relaxation", at(dynamics, &Dynamics::relaxation), time, at_least(0), "auto",
          "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window or softer layers, else none."),
   };
 }

@@ -59,6 +59,17 @@ std::string name_text(const std::string& name) {
   return bare ? name : toml_string(name);
 }
 
+/// A key that has another name now; told for one version.
+struct Renamed {
+  std::string_view path, now;
+};
+constexpr std::array renamed_keys = {Renamed{"dynamics.thaw", "dynamics.relaxation"}};
+
+void refuse_renamed(const Entry& entry, const std::string& path) {
+  const auto* key = std::ranges::find(renamed_keys, path, &Renamed::path);
+  if (key != renamed_keys.end()) fail(entry.node.place, path, fmt::format("is now {}", key->now));
+}
+
 /// A key that there was once. Written with its only value left it means nothing and is passed over.
 struct Removed {
   std::string_view path, left, words;
@@ -81,6 +92,7 @@ void refuse_unknown(const Table& table, const std::string& path) {
   for (const Entry& entry : table) {
     const std::string here = (path.empty() ? "" : path + ".") + name_text(entry.name);
     if (is_removed(entry, here)) continue;
+    refuse_renamed(entry, here);
     if (std::ranges::find(known, entry.name) == known.end()) {
       fail(entry.node.place, here, "unknown key; " + suggestion(path, entry.name));
     }

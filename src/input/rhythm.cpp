@@ -19,8 +19,8 @@ std::optional<Rhythm> rhythm_of(std::string_view every) {
   const double factor = unit == "s" ? 1.0 : unit == "min" ? 60.0 : unit == "h" ? 3600.0 : 0.0;
   double number = 0.0;
   const auto read = std::from_chars(digits.data(), end, number, std::chars_format::fixed);
-  const bool sound = read.ec == std::errc{} && read.ptr == end && number > 0.0 && number < 1e9 && factor > 0.0;
-  return sound ? std::optional(Rhythm{.seconds = number * factor}) : std::nullopt;
+  const bool valid = read.ec == std::errc{} && read.ptr == end && number > 0.0 && number < 1e9 && factor > 0.0;
+  return valid ? std::optional(Rhythm{.seconds = number * factor}) : std::nullopt;
 }
 
 }  // namespace packmpi::input

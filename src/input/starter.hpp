@@ -4,7 +4,7 @@
 
 namespace packmpi::input {
 
-/// A sound scene of `dimension` 2 or 3 in which every key stands with its meaning: those without a default with an
+/// A valid scene of `dimension` 2 or 3 in which every key stands with its meaning: those without a default with an
 /// example's value, the others commented out at their defaults. For `packmpi init`. Local.
 [[nodiscard]] std::string starter(int dimension);
 

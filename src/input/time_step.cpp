@@ -15,7 +15,7 @@ double squeeze(const RadiusRange& radii) {
   return q > alike_ratio ? elementary::power(q, 0.3) : 1.0;
 }
 
-// "stop" lets a slip end within one step: the larger the step, the more a pile creeps, and rough grains become denser
+// "stop" lets a slip end within one step: the larger the step, the more a bed creeps, and rough grains become denser
 // by it than smooth ones (doc/theory.md, "Time step").
 double chatter(const Contact& contact) {
   constexpr double smooth = 0.2;

@@ -66,9 +66,9 @@ void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const
     if (cells.start[at + low] < cells.start[at + high]) runs.push_back({cells.start[at + low], cells.start[at + high]});
   };
   for (const int other : columns_.forward(c)) add(cells_, other);
-  if (!still_.in_use()) return;
-  add(still_cells_, c);
-  for (const int other : columns_.around(c)) add(still_cells_, other);
+  if (!frozen_.in_use()) return;
+  add(frozen_cells_, c);
+  for (const int other : columns_.around(c)) add(frozen_cells_, other);
 }
 
 // `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.

@@ -15,11 +15,11 @@ namespace {
 
 // True displacements are worth looking at only if lists can then live on for a while.
 constexpr double live_on = 0.8;
-// No particle of a sound run is this many container heights up.
+// No particle of a valid run is this many container heights up.
 constexpr double highest = 1000.0;
 
 // Sets the levels of cells up to `top`, as high as a column is wide. One cell holds all above the highest place of a
-// sound run, so that a particle flung up costs no memory. Where there would be far more cells than particles they are
+// valid run, so that a particle flung up costs no memory. Where there would be far more cells than particles they are
 // higher, which also keeps their number in a LocalIndex.
 void set_levels(Cells& cells, double top, const scene::Scene& scene, int columns, LocalIndex owned) {
   constexpr double always = 0x1p22, a_particle = 64.0;
@@ -40,24 +40,24 @@ Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, co
       scene_(&scene),
       ownership_(&ownership),
       columns_(ownership, comm.rank()),
-      still_(comm, scene.features.layout()),
+      frozen_(comm, scene.features.layout()),
       halo_(comm, scene.features.layout()),
       size_classes_(scene, ownership) {}
 
 void Neighborhood::ownership_changed() {
   columns_ = LocalColumns(*ownership_, comm_->rank());
-  still_arranged_ = !still_.in_use();
+  frozen_arranged_ = !frozen_.in_use();
 }
 
 void Neighborhood::freeze(particles::Store& store, GlobalId below) {
-  still_.take(store, below);
-  still_arranged_ = false;
+  frozen_.take(store, below);
+  frozen_arranged_ = false;
 }
 
-void Neighborhood::thaw(particles::Store& store) {
-  still_.give_back(store);
-  still_cells_ = {};
-  still_arranged_ = true;
+void Neighborhood::release(particles::Store& store) {
+  frozen_.give_back(store);
+  frozen_cells_ = {};
+  frozen_arranged_ = true;
 }
 
 void Neighborhood::rebuild(particles::Store& store) {
@@ -67,7 +67,7 @@ void Neighborhood::rebuild(particles::Store& store) {
   sort_owned(store);
   halo_.plan(store, choose_sends(store));
   sort_ghosts(store);
-  if (still_.in_use()) add_still(store);
+  if (frozen_.in_use()) add_frozen(store);
   remember_positions(store);
   if (scene_->features.size_levels > 1) {
     size_classes_.build({x_[0], x_[1], x_[2], radius_, store.owned()}, pairs_);
@@ -190,7 +190,7 @@ void Neighborhood::sort_owned(particles::Store& store) {
     top = std::max(top, store.position(i)[vertical]);
     bottom = std::min(bottom, store.position(i)[vertical]);
   }
-  cells_.bottom = still_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
+  cells_.bottom = frozen_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
   set_levels(cells_, comm_->max(top), *scene_, columns_.total(), store.owned());
   const auto levels = static_cast<std::size_t>(cells_.levels);
   cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
@@ -252,13 +252,13 @@ void Neighborhood::sort_ghosts(particles::Store& store) {
 }
 
 // Frozen particles that a moving one of the same or a touching column may reach, as ghosts behind the halo's.
-void Neighborhood::add_still(particles::Store& store) {
+void Neighborhood::add_frozen(particles::Store& store) {
   const double range = scene_->column_width() * (1.0 + 1e-12);
-  if (!still_arranged_) {
-    still_.store().set_ghosts(0);
-    migrate(still_.store(), comm::Purpose::frozen);
-    still_.arrange(*ownership_, columns_, range);
-    still_arranged_ = true;
+  if (!frozen_arranged_) {
+    frozen_.store().set_ghosts(0);
+    migrate(frozen_.store(), comm::Purpose::frozen);
+    frozen_.arrange(*ownership_, columns_, range);
+    frozen_arranged_ = true;
   }
   const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
   std::vector<double> lowest(static_cast<std::size_t>(columns_.total()), HUGE_VAL);
@@ -275,10 +275,10 @@ void Neighborhood::add_still(particles::Store& store) {
     lower(c);
     for (const int other : columns_.around(c)) lower(other);
   }
-  still_cells_.levels = cells_.levels;
-  still_cells_.bottom = cells_.bottom;
-  still_cells_.inverse_height = cells_.inverse_height;
-  still_.append(lowest, store, still_cells_);
+  frozen_cells_.levels = cells_.levels;
+  frozen_cells_.bottom = cells_.bottom;
+  frozen_cells_.inverse_height = cells_.inverse_height;
+  frozen_.append(lowest, store, frozen_cells_);
 }
 
 void Neighborhood::remember_positions(const particles::Store& store) {
@@ -326,7 +326,7 @@ std::vector<std::int64_t> Neighborhood::column_counts(const particles::Store& st
 std::size_t Neighborhood::bytes() const noexcept {
   std::size_t total =
       halo_.bytes() + cells_.start.capacity() * sizeof(LocalIndex) + radius_.capacity() * sizeof(double);
-  total += still_.store().bytes() + still_cells_.start.capacity() * sizeof(LocalIndex);
+  total += frozen_.store().bytes() + frozen_cells_.start.capacity() * sizeof(LocalIndex);
   for (const std::vector<double>& x : x_) total += x.capacity() * sizeof(double);
   for (const PairList* list : {&pairs_, &near_pairs_}) {
     total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);

@@ -6,10 +6,10 @@
 
 #include "comm/comm.hpp"
 #include "neighbor/cells.hpp"
+#include "neighbor/frozen.hpp"
 #include "neighbor/halo.hpp"
 #include "neighbor/lists.hpp"
 #include "neighbor/size_classes.hpp"
-#include "neighbor/still.hpp"
 #include "neighbor/sweep.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
@@ -39,13 +39,13 @@ class Neighborhood {
   void ownership_changed();
 
   /// Every rank alike, without messages. Takes the particles with ids below `below` out of the store; they stand still
-  /// with velocity and spin zero, walls to the others, until thaw(). May be called again with a larger `below`. Then
-  /// rebuild().
+  /// with velocity and spin zero, walls to the others, until release(). May be called again with a larger `below`.
+  /// Then rebuild().
   void freeze(particles::Store& store, GlobalId below);
   /// Every rank alike, without messages. Gives all frozen particles back to the store, at rest; then rebuild().
-  void thaw(particles::Store& store);
+  void release(particles::Store& store);
   /// The frozen particles of this rank, owned; their copies from other ranks as ghosts.
-  [[nodiscard]] const particles::Store& frozen() const noexcept { return still_.store(); }
+  [[nodiscard]] const particles::Store& frozen() const noexcept { return frozen_.store(); }
 
   /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts, makes the lists.
   /// Any position is taken, even one that is not finite. Cost: O(owned + ghosts), about as much as three steps.
@@ -91,7 +91,7 @@ class Neighborhood {
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
   void sort_ghosts(particles::Store& store);
-  void add_still(particles::Store& store);
+  void add_frozen(particles::Store& store);
   void remember_positions(const particles::Store& store);
   struct Run {
     LocalIndex begin, end;  // slots
@@ -106,9 +106,9 @@ class Neighborhood {
   const scene::Ownership* ownership_;
   LocalColumns columns_;
   Cells cells_;
-  Still still_;
-  Cells still_cells_;           // slots of the frozen particles among the ghosts; empty while there are none
-  bool still_arranged_ = true;  // by the present owners
+  Frozen frozen_;
+  Cells frozen_cells_;           // slots of the frozen particles among the ghosts; empty while there are none
+  bool frozen_arranged_ = true;  // by the present owners
   Halo halo_;
   SizeClasses size_classes_;  // used if the scene has more than one
   PairList pairs_, near_pairs_;

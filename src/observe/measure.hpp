@@ -90,12 +90,12 @@ struct SizeStatistics {
 [[nodiscard]] SizeStatistics sizes(const comm::Comm& comm, const particles::Store& store);
 
 /// Particles that are where no particle may be. Collective.
-struct Soundness {
+struct Validity {
   std::int64_t found = 0;  ///< owned over all ranks
   std::int64_t non_finite = 0;
   std::int64_t outside = 0;  ///< centre beyond a wall or the floor
 };
-[[nodiscard]] Soundness soundness(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
+[[nodiscard]] Validity validity(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// The force of one contact, for /contacts of the pack file.
 struct ContactForce {

@@ -93,8 +93,8 @@ void find_got(const comm::Comm& comm, const Sample& sample, SizeMatches& matches
   }
   std::array<double, 2 * points> radii{};
   std::ranges::transform(high, radii.begin(), radius_of);
-  matches.by_number.got = diameters(radii.data());
-  matches.by_mass.got = diameters(radii.data() + points);
+  matches.by_number.achieved = diameters(radii.data());
+  matches.by_mass.achieved = diameters(radii.data() + points);
 }
 
 SizePoints asked(const scene::SizeCurve& curve, Weighting weighting) {
@@ -147,8 +147,8 @@ void find_distances(const comm::Comm& comm, const Sample& sample, const scene::S
 
 SizeMatches size_match(const comm::Comm& comm, const particles::Store& store, const scene::SizeCurve& curve) {
   SizeMatches matches;
-  matches.by_number.asked = asked(curve, Weighting::number);
-  matches.by_mass.asked = asked(curve, Weighting::mass);
+  matches.by_number.target = asked(curve, Weighting::number);
+  matches.by_mass.target = asked(curve, Weighting::mass);
   const Sample sample(comm, store);
   if (sample.all().number == 0) return matches;
   find_got(comm, sample, matches);

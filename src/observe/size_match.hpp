@@ -15,7 +15,7 @@ struct SizePoints {
 
 /// By one weighting. `distance` is Kolmogorov's: the largest difference of the two curves.
 struct SizeMatch {
-  SizePoints asked, got;
+  SizePoints target, achieved;
   double distance = 0.0;
 };
 

@@ -18,7 +18,7 @@ inline constexpr std::int64_t checkpoint_version = 2;
 enum class Phase {
   insertion,  ///< of a layer, or the end
   settling,   ///< the newest layer is inserted and goes on settling
-  thaw        ///< the final stage goes on
+  relaxation  ///< the final stage goes on
 };
 
 /// What steers a run beside its particles. The same on all ranks.
@@ -28,22 +28,22 @@ struct RunState {
   std::string version, git;     ///< of the program that wrote it
   int dimension = 3;
   bool rotation = true;
-  std::vector<GlobalId> first_ids;       ///< of each layer inserted so far
-  GlobalId count = 0;                    ///< particles
-  double energy_given = 0.0;             ///< [J] to the moving particles, for the step log
-  std::int64_t steps = 0;                ///< since the beginning of the run
-  std::int64_t particle_steps = 0;       ///< on all ranks, since the beginning
-  std::vector<report::LayerRow> layers;  ///< settled
-  double creep = 0.0;                    ///< [1/s] of the last settled layer
-  GlobalId moving_from = 0;              ///< particles with smaller ids are frozen
-  double height = 0.0;                   ///< [m] of the pile, as last measured
-  std::int64_t thaws = 0;                ///< final stages begun and finished so far
-  std::int64_t thaw_steps = 0;           ///< of all of them
-  double height_before_thaw = 0.0;       ///< [m]
+  std::vector<GlobalId> first_ids;        ///< of each layer inserted so far
+  GlobalId count = 0;                     ///< particles
+  double energy_given = 0.0;              ///< [J] to the moving particles, for the step log
+  std::int64_t steps = 0;                 ///< since the beginning of the run
+  std::int64_t particle_steps = 0;        ///< on all ranks, since the beginning
+  std::vector<report::LayerRow> layers;   ///< settled
+  double compaction_rate = 0.0;           ///< [1/s] of the last settled layer
+  GlobalId moving_from = 0;               ///< particles with smaller ids are frozen
+  double height = 0.0;                    ///< [m] of the bed, as last measured
+  std::int64_t relaxations = 0;           ///< final stages begun and finished so far
+  std::int64_t relaxation_steps = 0;      ///< of all of them
+  double height_before_relaxation = 0.0;  ///< [m]
   Phase phase = Phase::insertion;
   report::LayerRow row{};        ///< of the layer that settles, as far as known
   std::int64_t done = 0;         ///< steps of the phase so far
-  double phi_before = 0.0;       ///< solid fraction that the creep is measured from, once known
+  double phi_before = 0.0;       ///< solid fraction that the compaction rate is measured from, once known
   double mean_height = 0.0;      ///< [m] of the moving particles at the last look for rest
   std::int64_t calm_since = -1;  ///< step of the phase since which they are at rest; -1: they are not
   double phi_calm = 0.0;         ///< solid fraction then

@@ -74,10 +74,10 @@ RunState state_in(hid_t file) {
   }
   RunState state = state_of(text);
   state.effective_input = scene;
-  const bool sound = state.count >= 0 && state.steps >= 0 && state.done >= 0 && state.dimension >= 2 &&
+  const bool valid = state.count >= 0 && state.steps >= 0 && state.done >= 0 && state.dimension >= 2 &&
                      state.dimension <= 3 && std::ranges::is_sorted(state.first_ids) &&
                      state.first_ids.size() == state.layers.size() + (state.phase == Phase::settling ? 1 : 0);
-  if (!sound) refuse_checkpoint("its state contradicts itself");
+  if (!valid) refuse_checkpoint("its state contradicts itself");
   return state;
 }
 

@@ -60,7 +60,7 @@ struct PackSlice {
 /// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
 
-/// Rank-local. Whether PATH is a pack, sound or not, rather than another file.
+/// Rank-local. Whether PATH is a pack, valid or not, rather than another file.
 [[nodiscard]] bool is_pack(const std::string& path);
 
 }  // namespace packmpi::pack

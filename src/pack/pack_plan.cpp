@@ -115,8 +115,8 @@ std::string list_units(const std::vector<disk::Field>& fields) {
 
 void write_summary(hid_t file, const report::RunRecord& record) {
   const disk::h5::Handle group = disk::h5::create_group(file, "/summary");
-  std::vector<disk::Field> fields = report::asked_fields(record);
-  for (disk::Field& field : report::got_fields(record)) fields.push_back(std::move(field));
+  std::vector<disk::Field> fields = report::target_fields(record);
+  for (disk::Field& field : report::achieved_fields(record)) fields.push_back(std::move(field));
   disk::h5::set_attributes(group.get(), fields);
   disk::h5::set_attribute(group.get(), "units", list_units(fields));
   disk::h5::set_attributes(disk::h5::create_group(file, "/summary/audit").get(), report::audit_fields(record.audit));

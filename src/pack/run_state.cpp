@@ -17,13 +17,13 @@ using Json = nlohmann::ordered_json;
 /// compile.
 template <class Row, class Visit>
 void each_member(Row& row, Visit visit) {
-  auto& [inserted, total, attempts, fraction_asked, fraction_got, region_bottom, height, top, duration, steps,
+  auto& [inserted, total, attempts, target_fraction, achieved_fraction, region_bottom, height, top, duration, steps,
          kinetic_per_mgd, max_overlap, coordination, stop_reason] = row;
   visit("inserted", inserted);
   visit("total", total);
   visit("attempts", attempts);
-  visit("fraction_asked", fraction_asked);
-  visit("fraction_got", fraction_got);
+  visit("target_fraction", target_fraction);
+  visit("achieved_fraction", achieved_fraction);
   visit("region_bottom", region_bottom);
   visit("height", height);
   visit("top", top);
@@ -48,12 +48,12 @@ void each_value(State& state, Visit visit) {
   visit("energy_given", state.energy_given);
   visit("steps", state.steps);
   visit("particle_steps", state.particle_steps);
-  visit("creep", state.creep);
+  visit("compaction_rate", state.compaction_rate);
   visit("moving_from", state.moving_from);
   visit("height", state.height);
-  visit("thaws", state.thaws);
-  visit("thaw_steps", state.thaw_steps);
-  visit("height_before_thaw", state.height_before_thaw);
+  visit("relaxations", state.relaxations);
+  visit("relaxation_steps", state.relaxation_steps);
+  visit("height_before_relaxation", state.height_before_relaxation);
   visit("done", state.done);
   visit("phi_before", state.phi_before);
   visit("mean_height", state.mean_height);
@@ -61,7 +61,7 @@ void each_value(State& state, Visit visit) {
   visit("phi_calm", state.phi_calm);
 }
 
-constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "thaw"};
+constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
 Phase phase_of(const std::string& name) {
   const auto found = std::ranges::find(phase_names, name);

@@ -113,9 +113,9 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     line("hcp, share", a.order.hcp);
   }
   line("correlation of radius and height", a.segregation.correlation);
-  fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", "sizes", "asked", "got");
+  fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", "sizes", "target", "achieved");
   for (const SizeLine& size : size_lines(a.sizes)) {
-    fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", size.quantity, size.asked, size.got);
+    fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", size.quantity, size.target, size.achieved);
   }
   return fmt::to_string(out);
 }

@@ -55,11 +55,11 @@ EnsembleRow ensemble_row(int set, int pack, std::uint64_t seed, int code, const 
   if (summary.empty()) return row;
   std::ifstream file(summary);
   const Json json = Json::parse(file, nullptr, false);
-  if (json.is_discarded() || !json.contains("got")) {
+  if (json.is_discarded() || !json.contains("achieved")) {
     throw Error(ExitCode::io_failure, summary + " is no summary of a pack; make that pack anew");
   }
   for (std::size_t q = 0; q < row.values.size(); ++q) {
-    const Json& got = json["got"];
+    const Json& got = json["achieved"];
     if (got.contains(ensemble_quantities[q])) row.values[q] = got[ensemble_quantities[q]].get<double>();
   }
   return row;

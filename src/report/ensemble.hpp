@@ -7,7 +7,7 @@
 
 namespace packmpi::report {
 
-/// Quantities of a pack that the tables compare, by their names in NAME.json ("got").
+/// Quantities of a pack that the tables compare, by their names in NAME.json ("achieved").
 inline constexpr std::array<const char*, 6> ensemble_quantities{"phi",          "phi_bulk", "coordination",
                                                                 "mean_overlap", "height",   "particles"};
 

@@ -51,7 +51,7 @@ std::string to_json(const Estimate& e) {
   root["layers"] = to_object(e.layers);
   root["height"] = e.height;
   root["steps"] = e.steps;
-  root["thaw_steps"] = e.thaw_steps;
+  root["relaxation_steps"] = e.relaxation_steps;
   root["particle_steps"] = e.particle_steps;
   root["duration"] = e.duration;
   root["at_most"] = e.at_most;
@@ -90,12 +90,12 @@ std::string to_table(const Estimate& e) {
   fmt::format_to(std::back_inserter(out), "{}, {} rank{}\n{}", e.scene_file, e.ranks, e.ranks == 1 ? "" : "s",
                  answer(e));
   line("container [m]", lengths(e.size));
-  line("solid fraction of the pile",
+  line("solid fraction of the bed",
        fmt::format("{:.4f} +- {:.3f}{}", e.fraction, e.fraction_error, e.fraction_given ? ", as given" : ""));
   line("particles", range(e.particles));
   line("layers", fmt::format("{}, of {} particles each", range(e.layers), e.a_layer));
-  line("height of the pile [m]", fmt::format("{:.4g}", e.height));
-  line("time steps", fmt::format("{}{}, {} of them in the final stage", e.steps, most, e.thaw_steps));
+  line("height of the bed [m]", fmt::format("{:.4g}", e.height));
+  line("time steps", fmt::format("{}{}, {} of them in the final stage", e.steps, most, e.relaxation_steps));
   line("simulated time [s]", fmt::format("{:.4g}{}", e.duration, most));
   line("particle-steps", fmt::format("{:.3g}{}", static_cast<double>(e.particle_steps), most));
   line("most ranks the columns allow", fmt::format("{}", e.most_ranks));

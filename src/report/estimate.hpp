@@ -29,14 +29,14 @@ struct Estimate {
   std::vector<double> size;        ///< [m] container.size, with what was found
   double layer_thickness = 0.0;    ///< [m] layers.thickness; fitted to the particles if those were given
   bool thickness_changed = false;  ///< it is not that of the scene
-  double fraction = 0.0;           ///< solid fraction of the pile below its surface
+  double fraction = 0.0;           ///< solid fraction of the bed below its surface
   double fraction_error = 0.0;     ///< what it may be off by
   bool fraction_given = false;     ///< by the user
   std::int64_t a_layer = 0;        ///< particles
   Count layers, particles;
-  double height = 0.0;     ///< [m] of the pile
-  std::int64_t steps = 0;  ///< of time, thaw included
-  std::int64_t thaw_steps = 0;
+  double height = 0.0;     ///< [m] of the bed
+  std::int64_t steps = 0;  ///< of time, relaxation included
+  std::int64_t relaxation_steps = 0;
   std::int64_t particle_steps = 0;    ///< sum over the steps of the particles that move
   double duration = 0.0;              ///< [s] simulated
   bool at_most = false;               ///< stop = "settled" may take fewer steps

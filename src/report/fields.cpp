@@ -15,25 +15,25 @@ std::vector<double> lengths(const RunRecord& r) { return {r.size.begin(), r.size
 
 }  // namespace
 
-std::vector<disk::Field> asked_fields(const RunRecord& r) {
+std::vector<disk::Field> target_fields(const RunRecord& r) {
   return {{"name", "", r.name},
           {"dimension", "", std::int64_t{r.dimension}},
           {"size", "m", lengths(r)},
-          {"height_asked", "m", r.height_asked},
-          {"fraction_asked", "-", r.fraction_asked},
-          {"mean_radius_asked", "m", r.mean_radius_asked},
-          {"sd_radius_asked", "m", r.sd_radius_asked},
-          {"min_radius_asked", "m", r.min_radius_asked},
-          {"max_radius_asked", "m", r.max_radius_asked}};
+          {"target_height", "m", r.target_height},
+          {"target_fraction", "-", r.target_fraction},
+          {"target_mean_radius", "m", r.target_mean_radius},
+          {"target_sd_radius", "m", r.target_sd_radius},
+          {"target_min_radius", "m", r.target_min_radius},
+          {"target_max_radius", "m", r.target_max_radius}};
 }
 
-std::vector<disk::Field> got_fields(const RunRecord& r) {
+std::vector<disk::Field> achieved_fields(const RunRecord& r) {
   return {{"particles", "", r.particles},
           {"height", "m", r.height},
           {"top", "m", r.top},
           {"phi", "-", r.phi},
           {"phi_bulk", "-", r.phi_bulk},
-          {"creep", "1/s", r.creep},
+          {"compaction_rate", "1/s", r.compaction_rate},
           {"coordination", "-", r.coordination},
           {"rattlers", "-", r.rattlers},
           {"mean_overlap", "-", r.mean_overlap},
@@ -48,9 +48,9 @@ std::vector<disk::Field> got_fields(const RunRecord& r) {
           {"steps", "", r.steps},
           {"duration", "s", r.duration},
           {"particle_steps", "", r.particle_steps},
-          {"thaws", "", r.thaws},
-          {"thaw_steps", "", r.thaw_steps},
-          {"height_before_thaw", "m", r.height_before_thaw},
+          {"relaxations", "", r.relaxations},
+          {"relaxation_steps", "", r.relaxation_steps},
+          {"height_before_relaxation", "m", r.height_before_relaxation},
           {"reached", "", r.reached},
           {"stop_reason", "", r.stop_reason}};
 }
@@ -84,8 +84,8 @@ std::vector<LayerColumn> layer_columns(const std::vector<LayerRow>& layers) {
   return {{"inserted", "", collect(layers, &LayerRow::inserted)},
           {"total", "", collect(layers, &LayerRow::total)},
           {"attempts", "", collect(layers, &LayerRow::attempts)},
-          {"fraction_asked", "-", collect(layers, &LayerRow::fraction_asked)},
-          {"fraction_got", "-", collect(layers, &LayerRow::fraction_got)},
+          {"target_fraction", "-", collect(layers, &LayerRow::target_fraction)},
+          {"achieved_fraction", "-", collect(layers, &LayerRow::achieved_fraction)},
           {"region_bottom", "m", collect(layers, &LayerRow::region_bottom)},
           {"height", "m", collect(layers, &LayerRow::height)},
           {"top", "m", collect(layers, &LayerRow::top)},

@@ -10,8 +10,8 @@
 
 namespace packmpi::report {
 
-[[nodiscard]] std::vector<disk::Field> asked_fields(const RunRecord& record);
-[[nodiscard]] std::vector<disk::Field> got_fields(const RunRecord& record);
+[[nodiscard]] std::vector<disk::Field> target_fields(const RunRecord& record);
+[[nodiscard]] std::vector<disk::Field> achieved_fields(const RunRecord& record);
 [[nodiscard]] std::vector<disk::Field> audit_fields(const Audit& audit);
 /// How it was made: versions, machine kind, ranks, times; nothing that names the host.
 [[nodiscard]] std::vector<disk::Field> provenance_fields(const RunRecord& record);

@@ -55,7 +55,7 @@ Json to_numbers(const std::vector<RankNumbers>& all) {
 
 std::string to_json(const RunRecord& record) {
   Json units = Json::object();
-  for (const auto& fields : {asked_fields(record), got_fields(record), audit_fields(record.audit)})
+  for (const auto& fields : {target_fields(record), achieved_fields(record), audit_fields(record.audit)})
     add_units(units, fields);
   for (const LayerColumn& column : layer_columns({})) {
     if (column.unit[0] != '\0') units[column.name] = column.unit;
@@ -64,8 +64,8 @@ std::string to_json(const RunRecord& record) {
   Json root;
   root["format"] = "packmpi-summary";
   root["format_version"] = 1;
-  root["asked"] = to_object(asked_fields(record));
-  root["got"] = to_object(got_fields(record));
+  root["target"] = to_object(target_fields(record));
+  root["achieved"] = to_object(achieved_fields(record));
   root["sizes"] = to_json(record.sizes);
   root["audit"] = to_object(audit_fields(record.audit));
   root["layers"] = to_rows(record);

@@ -1,5 +1,5 @@
-/// What a run reports about itself: asked versus got, per layer and in all; written to the pack, NAME.json and the
-/// screen.
+/// What a run reports about itself: target versus achieved, per layer and in all; written to the pack, NAME.json and
+/// the screen.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,15 +12,15 @@ namespace packmpi::report {
 
 /// One row of the per-layer table.
 struct LayerRow {
-  std::int64_t inserted = 0;    ///< particles
-  std::int64_t total = 0;       ///< particles after it
-  std::int64_t attempts = 0;    ///< darts thrown
-  double fraction_asked = 0.0;  ///< phi_0
-  double fraction_got = 0.0;    ///< solid volume inserted / region volume
-  double region_bottom = 0.0;   ///< [m] T
-  double height = 0.0;          ///< [m] after settling, by the scene's height rule
-  double top = 0.0;             ///< [m] highest particle top
-  double duration = 0.0;        ///< [s] simulated
+  std::int64_t inserted = 0;       ///< particles
+  std::int64_t total = 0;          ///< particles after it
+  std::int64_t attempts = 0;       ///< trials
+  double target_fraction = 0.0;    ///< phi_0
+  double achieved_fraction = 0.0;  ///< solid volume inserted / region volume
+  double region_bottom = 0.0;      ///< [m] T
+  double height = 0.0;             ///< [m] after settling, by the scene's height rule
+  double top = 0.0;                ///< [m] highest particle top
+  double duration = 0.0;           ///< [s] simulated
   std::int64_t steps = 0;
   double kinetic_per_mgd = 0.0;  ///< mean kinetic energy / (m g d) of a mean particle at the end of the layer
   double max_overlap = 0.0;      ///< largest overlap / smaller radius
@@ -53,16 +53,16 @@ struct RunRecord {
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
-  Vec3 size{};                  ///< [m] container
-  double height_asked = 0.0;    ///< [m] H_d
-  double fraction_asked = 0.0;  ///< phi_0 of each insertion
-  double mean_radius_asked = 0.0, sd_radius_asked = 0.0, min_radius_asked = 0.0, max_radius_asked = 0.0;  ///< [m]
+  Vec3 size{};                   ///< [m] container
+  double target_height = 0.0;    ///< [m] H_d
+  double target_fraction = 0.0;  ///< phi_0 of each insertion
+  double target_mean_radius = 0.0, target_sd_radius = 0.0, target_min_radius = 0.0, target_max_radius = 0.0;  ///< [m]
   // got (*)
   std::int64_t particles = 0;
   double height = 0.0, top = 0.0;  ///< [m]
   double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
   double phi_bulk = 0.0;           ///< solid fraction between 0.2 H_d and 0.8 H_d
-  double creep = 0.0;              ///< d phi_bulk / dt at the end [1/s]
+  double compaction_rate = 0.0;    ///< d phi_bulk / dt at the end [1/s]
   double coordination = 0.0;       ///< mean touching particles
   double rattlers = 0.0;           ///< share of particles with fewer than dimension + 1 contacts
   double mean_overlap = 0.0;       ///< mean over contacts of overlap / smaller radius
@@ -75,10 +75,10 @@ struct RunRecord {
   std::int64_t steps = 0;
   double duration = 0.0;  ///< [s] simulated
   std::int64_t particle_steps = 0;
-  std::int64_t thaws = 0;           ///< final stages, in which all particles move; more than one if the pile sank
-  std::int64_t thaw_steps = 0;      ///< of all of them, part of steps
-  double height_before_thaw = 0.0;  ///< [m] before the last of them; 0 if there was none
-  bool reached = false;             ///< height asked reached
+  std::int64_t relaxations = 0;           ///< final stages, in which all particles move; more than one if the bed sank
+  std::int64_t relaxation_steps = 0;      ///< of all of them, part of steps
+  double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
+  bool reached = false;                   ///< target height reached
   std::string stop_reason;
   std::vector<LayerRow> layers;
   Audit audit;

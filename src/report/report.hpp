@@ -13,7 +13,7 @@ namespace packmpi::report {
 /// The record as JSON text (2-space indent, stable key order, 17 digits). Local.
 [[nodiscard]] std::string to_json(const RunRecord& record);
 
-/// "Asked versus got" and the layers as a plain-text table of at most 100 columns. Local.
+/// "Target versus achieved" and the layers as a plain-text table of at most 100 columns. Local.
 [[nodiscard]] std::string to_table(const RunRecord& record);
 
 /// One row of NAME.steps.csv.

@@ -15,7 +15,7 @@ Json to_json(const observe::SizePoints& p) {
 }
 
 Json to_json(const observe::SizeMatch& match) {
-  return {{"asked", to_json(match.asked)}, {"got", to_json(match.got)}, {"distance", match.distance}};
+  return {{"target", to_json(match.target)}, {"achieved", to_json(match.achieved)}, {"distance", match.distance}};
 }
 
 void add_lines(const char* weighting, const observe::SizeMatch& match, std::vector<SizeLine>& lines) {
@@ -23,13 +23,13 @@ void add_lines(const char* weighting, const observe::SizeMatch& match, std::vect
     lines.push_back(
         {fmt::format(fmt::runtime(what), weighting), fmt::format("{:.5g}", asked), fmt::format("{:.5g}", got)});
   };
-  line("D10 by {} [m]", match.asked.d10, match.got.d10);
-  line("D30 by {} [m]", match.asked.d30, match.got.d30);
-  line("D50 by {} [m]", match.asked.d50, match.got.d50);
-  line("D60 by {} [m]", match.asked.d60, match.got.d60);
-  line("D90 by {} [m]", match.asked.d90, match.got.d90);
-  line("Cu by {}", match.asked.uniformity(), match.got.uniformity());
-  line("Cc by {}", match.asked.curvature(), match.got.curvature());
+  line("D10 by {} [m]", match.target.d10, match.achieved.d10);
+  line("D30 by {} [m]", match.target.d30, match.achieved.d30);
+  line("D50 by {} [m]", match.target.d50, match.achieved.d50);
+  line("D60 by {} [m]", match.target.d60, match.achieved.d60);
+  line("D90 by {} [m]", match.target.d90, match.achieved.d90);
+  line("Cu by {}", match.target.uniformity(), match.achieved.uniformity());
+  line("Cc by {}", match.target.curvature(), match.achieved.curvature());
   lines.push_back({fmt::format("distance of the curves by {}", weighting), "0", fmt::format("{:.3g}", match.distance)});
 }
 

@@ -1,4 +1,4 @@
-/// The sizes asked and got, as JSON and as lines of a table. Private to this room.
+/// The sizes target and achieved, as JSON and as lines of a table. Private to this room.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace packmpi::report {
 
-/// {"number": {"asked": {"d10", ..., "cu", "cc"}, "got": the same, "distance"}, "mass": the same}. Local.
+/// {"number": {"target": {"d10", ..., "cu", "cc"}, "achieved": the same, "distance"}, "mass": the same}. Local.
 [[nodiscard]] nlohmann::ordered_json to_json(const observe::SizeMatches& sizes);
 
-/// One line of "asked versus got".
+/// One line of "target versus achieved".
 struct SizeLine {
-  std::string quantity, asked, got;
+  std::string quantity, target, achieved;
 };
 /// D10 to D90, Cu, Cc and the distance, by number, then by mass. Local.
 [[nodiscard]] std::vector<SizeLine> size_lines(const observe::SizeMatches& sizes);

@@ -21,19 +21,19 @@ void line(Buffer& out, std::string_view quantity, std::string_view asked, std::s
 /// Only what was asked for is shown in the middle column.
 void compare(Buffer& out, const RunRecord& r) {
   fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
-  line(out, "quantity", "asked", "got");
+  line(out, "quantity", "target", "achieved");
   line(out, "particles", "", number(r.particles));
-  line(out, "height [m]", number(r.height_asked), number(r.height));
+  line(out, "height [m]", number(r.target_height), number(r.height));
   line(out, "highest top [m]", "", number(r.top));
-  line(out, "solid fraction below the height asked, phi", "", number(r.phi));
+  line(out, "solid fraction below the target height, phi", "", number(r.phi));
   line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
-  line(out, "creep left, d phi_bulk / dt [1/s]", "", number(r.creep));
-  line(out, "mean radius [m]", number(r.mean_radius_asked), number(r.mean_radius));
-  line(out, "standard deviation of the radius [m]", number(r.sd_radius_asked), number(r.sd_radius));
-  line(out, "smallest radius [m]", number(r.min_radius_asked), number(r.min_radius));
-  line(out, "largest radius [m]", number(r.max_radius_asked), number(r.max_radius));
-  if (r.min_radius_asked < r.max_radius_asked) {
-    for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.asked, size.got);
+  line(out, "compaction rate left, d phi_bulk / dt [1/s]", "", number(r.compaction_rate));
+  line(out, "mean radius [m]", number(r.target_mean_radius), number(r.mean_radius));
+  line(out, "standard deviation of the radius [m]", number(r.target_sd_radius), number(r.sd_radius));
+  line(out, "smallest radius [m]", number(r.target_min_radius), number(r.min_radius));
+  line(out, "largest radius [m]", number(r.target_max_radius), number(r.max_radius));
+  if (r.target_min_radius < r.target_max_radius) {
+    for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.target, size.achieved);
   }
   line(out, "touching particles, mean", "", number(r.coordination));
   line(out, "rattlers, share", "", number(r.rattlers));
@@ -54,13 +54,13 @@ void list_layers(Buffer& out, const RunRecord& r) {
   constexpr const char* head = "  {:>5} {:>9} {:>10} {:>6} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:<8}\n";
   constexpr const char* row =
       "  {:>5} {:>9} {:>10} {:>6.4f} {:>6.4f} {:>8.4g} {:>8.4g} {:>8} {:>8.1e} {:>8.1e} {:<8.8}\n";
-  fmt::format_to(std::back_inserter(out), fmt::runtime(head), "layer", "inserted", "total", "asked", "got", "height m",
-                 "top m", "steps", "E/mgd", "overlap", "stop");
+  fmt::format_to(std::back_inserter(out), fmt::runtime(head), "layer", "inserted", "total", "target", "achieved",
+                 "height m", "top m", "steps", "E/mgd", "overlap", "stop");
   for (std::size_t k = 0; k < r.layers.size(); ++k) {
     const LayerRow& layer = r.layers[k];
-    fmt::format_to(std::back_inserter(out), fmt::runtime(row), k + 1, layer.inserted, layer.total, layer.fraction_asked,
-                   layer.fraction_got, layer.height, layer.top, layer.steps, layer.kinetic_per_mgd, layer.max_overlap,
-                   layer.stop_reason);
+    fmt::format_to(std::back_inserter(out), fmt::runtime(row), k + 1, layer.inserted, layer.total,
+                   layer.target_fraction, layer.achieved_fraction, layer.height, layer.top, layer.steps,
+                   layer.kinetic_per_mgd, layer.max_overlap, layer.stop_reason);
   }
 }
 

@@ -12,11 +12,11 @@ Filling::Filling(const comm::Comm& comm, const scene::Scene& scene, const scene:
     : comm_(comm),
       scene_(scene),
       region_(region),
-      thrower_(scene, ownership, region),
+      sampler_(scene, ownership, region),
       grid_(scene, ownership, region, asked),
       border_(ownership, comm.rank(), scene.sizes.largest()),
       placed_(grid_, Metric(scene.box)),
-      conflicts_(comm, grid_, Metric(scene.box), border_, thrower_, placed_) {
+      conflicts_(comm, grid_, Metric(scene.box), border_, sampler_, placed_) {
   const auto bound = [&](std::int64_t rank) {
     return asked / comm.size() * rank + std::min(rank, asked % comm.size());
   };
@@ -37,14 +37,14 @@ Filling::Counts Filling::count() const {
 void Filling::begin(int size_class) { waiting_ = std::exchange(share_[static_cast<std::size_t>(size_class)], {}); }
 
 Conflicts::Outcome Filling::fire(const Volley& volley, particles::Store& store) {
-  const std::vector<Dart> darts = throw_darts(volley);
+  const std::vector<Trial> trials = make_trials(volley);
   waiting_.clear();
   free_.clear();
-  for (const Dart& dart : darts) {
-    if (!placed_.overlaps(dart.sphere)) {
-      free_.push_back(dart);
-    } else if (dart.attempt == volley.last()) {  // the particle goes on from the rank where its last dart fell
-      wait(dart);
+  for (const Trial& trial : trials) {
+    if (!placed_.overlaps(trial.sphere)) {
+      free_.push_back(trial);
+    } else if (trial.attempt == volley.last()) {  // the particle goes on from the rank where its last trial fell
+      wait(trial);
     }
   }
   std::ranges::sort(free_, {}, turn);
@@ -60,30 +60,30 @@ Conflicts::Outcome Filling::fire(const Volley& volley, particles::Store& store) 
   return outcome;
 }
 
-// The volley's darts that fall in this rank's columns, whoever threw them.
-std::vector<Dart> Filling::throw_darts(const Volley& volley) {
-  std::vector<Dart> mine;
+// The volley's trials that fall in this rank's columns, whoever threw them.
+std::vector<Trial> Filling::make_trials(const Volley& volley) {
+  std::vector<Trial> mine;
   mine.reserve(waiting_.size() * volley.count);
   for (const auto& [particle, radius] : waiting_) {
     for (std::uint32_t attempt = volley.first; attempt <= volley.last(); ++attempt) {
-      const Dart dart = thrower_.dart(particle, radius, attempt);
-      const Rank owner = thrower_.owner(dart);
+      const Trial trial = sampler_.trial(particle, radius, attempt);
+      const Rank owner = sampler_.owner(trial);
       if (owner == comm_.rank()) {
-        mine.push_back(dart);
+        mine.push_back(trial);
       } else {
-        mail_.post(owner, dart);
+        mail_.post(owner, trial);
       }
     }
   }
-  const std::vector<Dart> received = mail_.deliver(comm_);
+  const std::vector<Trial> received = mail_.deliver(comm_);
   mine.insert(mine.end(), received.begin(), received.end());
   return mine;
 }
 
-void Filling::append(const Dart& dart, particles::Store& store) {
-  const auto& [centre, radius] = dart.sphere;
+void Filling::append(const Trial& trial, particles::Store& store) {
+  const auto& [centre, radius] = trial.sphere;
   const input::Layers& layers = scene_.in.layers;
-  store.add(region_.first_id + static_cast<GlobalId>(dart.particle), centre, radius, layers.velocity, layers.spin);
+  store.add(region_.first_id + static_cast<GlobalId>(trial.particle), centre, radius, layers.velocity, layers.spin);
   volumes_.push_back(geometry::volume(scene_.box.dimension, radius));
 }
 

@@ -11,11 +11,11 @@
 #include "rsa/conflicts.hpp"
 #include "rsa/insert.hpp"
 #include "rsa/mail.hpp"
-#include "rsa/thrower.hpp"
+#include "rsa/sampler.hpp"
 
 namespace packmpi::rsa {
 
-/// The spheres placed in this rank's columns and the particles whose next darts this rank throws. Memory: O(asked /
+/// The spheres placed in this rank's columns and the particles whose next trials this rank throws. Memory: O(asked /
 /// ranks).
 class Filling {
  public:
@@ -28,7 +28,7 @@ class Filling {
   [[nodiscard]] Counts count() const;
   /// Local. The particles of a size class come next; none may be waiting.
   void begin(int size_class);
-  /// Collective. Throws the volley's darts for every particle that waits and appends the spheres that stay.
+  /// Collective. Throws the volley's trials for every particle that waits and appends the spheres that stay.
   Conflicts::Outcome fire(const Volley& volley, particles::Store& store);
   /// Collective. Of all spheres placed [m3], 2D: [m2].
   [[nodiscard]] double solid_volume() const { return comm::exact_sum(comm_, volumes_); }
@@ -38,22 +38,22 @@ class Filling {
     std::uint64_t particle;
     double radius;
   };
-  [[nodiscard]] std::vector<Dart> throw_darts(const Volley& volley);
-  void append(const Dart& dart, particles::Store& store);
-  void wait(const Dart& dart) { waiting_.push_back({dart.particle, dart.sphere.radius}); }
+  [[nodiscard]] std::vector<Trial> make_trials(const Volley& volley);
+  void append(const Trial& trial, particles::Store& store);
+  void wait(const Trial& trial) { waiting_.push_back({trial.particle, trial.sphere.radius}); }
 
   const comm::Comm& comm_;
   const scene::Scene& scene_;
   LayerRegion region_;
-  Thrower thrower_;
+  Sampler sampler_;
   CellGrids grid_;
   Border border_;
   Bins placed_;  // of this layer, in this rank's columns and near them
   Conflicts conflicts_;
-  Mailbox<Dart> mail_;
+  Mailbox<Trial> mail_;
   std::array<std::vector<Waiting>, size_classes> share_;  // the classes to come
   std::vector<Waiting> waiting_;                          // of the present class
-  std::vector<Dart> free_;       // darts that overlap none placed before their volley, in order
+  std::vector<Trial> free_;      // trials that overlap none placed before their volley, in order
   std::vector<double> volumes_;  // of the spheres placed here
 };
 

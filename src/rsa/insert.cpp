@@ -18,7 +18,7 @@ std::uint32_t attempt_limit(const scene::Scene& scene) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(scene.in.layers.attempts, 0, most));
 }
 
-// Collective. Throws darts until the class's `unplaced` particles are placed, and adds to `got`. The attempts made, if
+// Collective. Throws trials until the class's `unplaced` particles are placed, and adds to `got`. The attempts made, if
 // they did not suffice.
 std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t unplaced, std::uint32_t limit,
                                          Filling& filling, particles::Store& store, Insertion& got,
@@ -31,11 +31,11 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
     const Volley volley = pace.next(attempt, unplaced, limit);
     const auto [kept, thrown] = filling.fire(volley, store);
     unplaced -= kept;
-    const std::int64_t darts = thrown + unplaced * volley.count;
+    const std::int64_t trials = thrown + unplaced * volley.count;
     got.inserted += kept;
-    got.darts += darts;
-    outlook.record(darts, kept);
-    pace.record(darts, kept);
+    got.trials += trials;
+    outlook.record(trials, kept);
+    pace.record(trials, kept);
     attempt += volley.count;
   }
   return std::nullopt;
@@ -54,11 +54,11 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
       ExitCode::bad_input,
       fmt::format(
           "layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of the {:.4f} asked, "
-          "after {} darts; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates near "
+          "after {} trials; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates near "
           "0.547 "
           "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
           "layers.thickness{}",
-          region.layer, got.inserted, got.asked, share, scene.in.layers.fraction, got.darts, attempts, limit, where,
+          region.layer, got.inserted, got.target, share, scene.in.layers.fraction, got.trials, attempts, limit, where,
           early ? ", as too few of the last ones found room" : "", early ? "" : " or layers.attempts"));
 }
 
@@ -100,8 +100,8 @@ Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene:
                  const LayerRegion& region, particles::Store& store, const std::function<void()>& between_volleys) {
   check_room(scene, region);
   Insertion got;
-  got.asked = particles_needed(comm, scene, region);
-  Filling filling(comm, scene, ownership, region, got.asked);
+  got.target = particles_needed(comm, scene, region);
+  Filling filling(comm, scene, ownership, region, got.target);
   const Filling::Counts counts = filling.count();
   for (int k = 0; k < size_classes; ++k) {
     filling.begin(k);

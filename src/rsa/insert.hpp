@@ -21,9 +21,9 @@ struct LayerRegion {
 /// What came of it; the same on all ranks and for any number of them.
 struct Insertion {
   std::int64_t inserted = 0;
-  std::int64_t darts = 0;     ///< positions tried
+  std::int64_t trials = 0;    ///< positions tried
   double solid_volume = 0.0;  ///< [m3] (2D: m2)
-  std::int64_t asked = 0;     ///< particles needed to reach phi_0
+  std::int64_t target = 0;     ///< particles needed to reach phi_0
 };
 
 /// How many particles the layer needs: the smallest n whose radii 0 .. n-1 have solid volume >= fraction * region
@@ -32,7 +32,7 @@ struct Insertion {
                                             const LayerRegion& region);
 
 /// Graded particles are placed in so many classes, the largest first: in any other order the last large ones find no
-/// room (CC16 example 5.4: a million darts do not suffice). Equal particles are all in class 0.
+/// room (CC16 example 5.4: a million trials do not suffice). Equal particles are all in class 0.
 inline constexpr int size_classes = 8;
 
 /// True if the classes have equal ratios of radius, not equal differences: radii of more than 1:3.
@@ -42,21 +42,21 @@ inline constexpr int size_classes = 8;
 /// The class of a radius [m]: equal parts of [smallest, largest] or of its logarithm, 0 holds the largest.
 [[nodiscard]] int size_class(const scene::Sizes& sizes, double radius);
 
-/// Collective. Throws every particle's first dart, then the second darts of those rejected, and so on, in the order
-/// (size class, attempt, particle); a dart is kept if it overlaps none kept before it. Appends the placed particles of
-/// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming asked, placed and darts, if a particle
-/// is unplaced after layers.attempts darts; or earlier, once so few darts find room that the attempts left cannot
+/// Collective. Throws every particle's first trial, then the second trials of those rejected, and so on, in the order
+/// (size class, attempt, particle); a trial is kept if it overlaps none kept before it. Appends the placed particles of
+/// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming target, placed and trials, if a particle
+/// is unplaced after layers.attempts trials; or earlier, once so few trials find room that the attempts left cannot
 /// suffice. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws leaves
-/// with a part of the layer in `store`. Cost: O(darts / ranks) work, O(asked / ranks) memory, messages only to the
-/// ranks where darts fall.
+/// with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory, messages only to the
+/// ranks where trials fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
                                const LayerRegion& region, particles::Store& store,
                                const std::function<void()>& between_volleys = {});
 
-/// The dart of a particle: a uniform position with the whole sphere inside region and container (any lateral position
+/// The trial of a particle: a uniform position with the whole sphere inside region and container (any lateral position
 /// on periodic axes). [m]
-[[nodiscard]] Vec3 dart(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
-                        std::uint32_t attempt);
+[[nodiscard]] Vec3 trial(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
+                         std::uint32_t attempt);
 
 /// True if two spheres overlap, by the one formula used everywhere in this room (shortest image on periodic axes).
 [[nodiscard]] bool overlap(const geometry::Box& box, const Vec3& a, double ra, const Vec3& b, double rb);

@@ -17,8 +17,8 @@ constexpr double longest_volley = 2000.0;
 bool Outlook::hopeless(std::uint32_t attempt, std::int64_t unplaced) noexcept {
   if (attempt < first_look || !std::has_single_bit(attempt)) return false;
   const auto kept = static_cast<double>(kept_);
-  const double chance = (kept + 3.0 * std::sqrt(kept) + 10.0) / static_cast<double>(darts_);
-  darts_ = kept_ = 0;
+  const double chance = (kept + 3.0 * std::sqrt(kept) + 10.0) / static_cast<double>(trials_);
+  trials_ = kept_ = 0;
   const auto log2 =
       static_cast<double>(std::bit_width(static_cast<std::uint64_t>(unplaced)) - 1);  // 0.34 log2 x < ln x / 2
   return unplaced >= few && chance * (limit_ - attempt) < 0.34 * log2;

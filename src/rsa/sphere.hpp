@@ -21,19 +21,19 @@ struct Sphere {
 };
 
 /// A sphere thrown for a particle of the layer.
-struct Dart {
+struct Trial {
   std::uint64_t particle;
   std::uint32_t attempt;
   Sphere sphere;
 };
 
-/// The order of the serial loop: every particle's first dart, then the second darts of those left, and so on.
+/// The order of the serial loop: every particle's first trial, then the second trials of those left, and so on.
 struct Turn {
   std::uint32_t attempt;
   std::uint64_t particle;
   friend constexpr auto operator<=>(const Turn&, const Turn&) = default;
 };
-[[nodiscard]] constexpr Turn turn(const Dart& dart) { return {dart.attempt, dart.particle}; }
+[[nodiscard]] constexpr Turn turn(const Trial& trial) { return {trial.attempt, trial.particle}; }
 
 /// Distances in a box, prepared for hot loops: a wall axis has an infinite period.
 class Metric {

@@ -8,7 +8,7 @@
 #include "pack/pack.hpp"
 #include "report/analysis.hpp"
 #include "report/report.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -45,11 +45,11 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   comm::agree_on(comm, [&] { slice = pack::read_slice(path, comm.rank(), comm.size()); });
   double range = 0.0;
   const scene::Scene scene = reaching_scene(slice.scene, path, range);
-  Pile pile(comm, scene);
-  take_share(slice.rows, pile.store);
-  pile.neighborhood.rebuild(pile.store);  // to the owners of their columns
-  pile.balance();
-  const observe::Analysis analysis = observe::analyse({comm, scene, pile.store, pile.neighborhood, range});
+  Bed bed(comm, scene);
+  take_share(slice.rows, bed.store);
+  bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
+  bed.balance();
+  const observe::Analysis analysis = observe::analyse({comm, scene, bed.store, bed.neighborhood, range});
   const std::filesystem::path pack(path);
   disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
                    report::to_json(analysis, scene.box.dimension));

@@ -20,13 +20,13 @@ struct Number {
 constexpr std::array<const char*, comm::purposes> purpose_names{"ghost",     "halo",   "migration", "frozen",
                                                                 "insertion", "output", "other"};
 
-std::vector<Number> counts_of(const Pile& pile, std::int64_t touching) {
-  const dynamics::Work& work = pile.stepper.work();
-  const neighbor::Effort& effort = pile.neighborhood.effort();
-  const comm::Counters& traffic = pile.comm.counters();
-  std::vector<Number> counts{{"owned", "", pile.store.owned()},
-                             {"ghosts", "", pile.neighborhood.halo().ghosts()},
-                             {"listed_pairs", "", std::ssize(pile.neighborhood.pairs().first)},
+std::vector<Number> counts_of(const Bed& bed, std::int64_t touching) {
+  const dynamics::Work& work = bed.stepper.work();
+  const neighbor::Effort& effort = bed.neighborhood.effort();
+  const comm::Counters& traffic = bed.comm.counters();
+  std::vector<Number> counts{{"owned", "", bed.store.owned()},
+                             {"ghosts", "", bed.neighborhood.halo().ghosts()},
+                             {"listed_pairs", "", std::ssize(bed.neighborhood.pairs().first)},
                              {"touching_pairs", "", touching},
                              {"particle_steps", "", work.particle_steps},
                              {"frozen_steps", "", work.frozen_steps},
@@ -43,17 +43,17 @@ std::vector<Number> counts_of(const Pile& pile, std::int64_t touching) {
   return counts;
 }
 
-std::vector<Number> costs_of(const Pile& pile) {
+std::vector<Number> costs_of(const Bed& bed) {
   const auto nanoseconds = [](double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); };
-  const neighbor::Effort& effort = pile.neighborhood.effort();
-  const auto allocated = static_cast<std::int64_t>(pile.bytes());
+  const neighbor::Effort& effort = bed.neighborhood.effort();
+  const auto allocated = static_cast<std::int64_t>(bed.bytes());
   const double cpu = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   return {{"cpu", "ns", nanoseconds(cpu)},
-          {"stepping", "ns", nanoseconds(pile.stepping)},
+          {"stepping", "ns", nanoseconds(bed.stepping)},
           {"waiting", "ns", nanoseconds(effort.waiting)},
           {"refreshing", "ns", nanoseconds(effort.refreshing)},
           {"rebuilding", "ns", nanoseconds(effort.rebuilding)},
-          {"inserting", "ns", nanoseconds(pile.inserting)},
+          {"inserting", "ns", nanoseconds(bed.inserting)},
           {"allocated", "B", allocated},
           {"memory", "B", memory_high_water()}};
 }
@@ -74,9 +74,9 @@ std::vector<report::RankNumbers> gathered(const comm::Comm& comm, const std::vec
 
 }  // namespace
 
-void count(const Pile& pile, std::int64_t touching, report::RunRecord& record) {
-  record.counters = gathered(pile.comm, counts_of(pile, touching));
-  record.costs = gathered(pile.comm, costs_of(pile));
+void count(const Bed& bed, std::int64_t touching, report::RunRecord& record) {
+  record.counters = gathered(bed.comm, counts_of(bed, touching));
+  record.costs = gathered(bed.comm, costs_of(bed));
 }
 
 }  // namespace packmpi::run

@@ -13,7 +13,7 @@
 namespace packmpi::run {
 namespace {
 
-constexpr double densest = 0.75;                         // no random pile has more solid than this; 2D: 0.91
+constexpr double densest = 0.75;                         // no random bed has more solid than this; 2D: 0.91
 constexpr double bytes_a_particle = 112.0 + 2.0 * 88.0;  // of a pack file and two checkpoints
 
 bool there(const std::string& path) {

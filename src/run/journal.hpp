@@ -9,7 +9,7 @@
 #include "base/timer.hpp"
 #include "report/record.hpp"
 #include "report/report.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 
 namespace packmpi::run {
 
@@ -17,8 +17,8 @@ namespace packmpi::run {
 class Journal {
  public:
   /// Collective. Opens the step log at `steps_path`; after a restart, which has settled `layers` before, it goes on
-  /// from the step the pile is at.
-  Journal(const Pile& pile, const std::string& steps_path, bool quiet, bool restarted,
+  /// from the step the bed is at.
+  Journal(const Bed& bed, const std::string& steps_path, bool quiet, bool restarted,
           const std::vector<report::LayerRow>& layers);
 
   void layer_inserted(const report::LayerRow& row);  ///< local
@@ -26,8 +26,8 @@ class Journal {
   /// duration done, 0 .. 1.
   void moment(double share);
   void layer_settled(const report::LayerRow& row);  ///< local
-  void thaw_started();                              ///< local; what follows is the final stage
-  void thawed(double height);                       ///< local; height [m] after the final stage
+  void relaxation_started();                        ///< local; what follows is the final stage
+  void relaxed(double height);                      ///< local; height [m] after the final stage
   /// Collective. Closes the files.
   void finish();
 
@@ -36,7 +36,7 @@ class Journal {
   [[nodiscard]] double seconds_left(double share) const;
   void tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const;
 
-  const Pile& pile_;
+  const Bed& bed_;
   report::StepLog steps_;
   Stopwatch watch_;
   bool terminal_ = false;
@@ -45,7 +45,7 @@ class Journal {
   double height_ = 0.0;  // [m] after the last settled layer
   int layers_done_ = 0;
   int layers_before_ = 0;  // settled before a restart
-  bool thawing_ = false;
+  bool relaxing_ = false;
 };
 
 }  // namespace packmpi::run

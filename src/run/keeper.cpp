@@ -35,28 +35,28 @@ double slurm_seconds() {
 }
 
 const char* phase_name(pack::Phase phase) {
-  constexpr std::array<const char*, 3> names{"insertion", "settling", "thaw"};
+  constexpr std::array<const char*, 3> names{"insertion", "settling", "relaxation"};
   return names.at(static_cast<std::size_t>(phase));
 }
 
 }  // namespace
 
-Keeper::Keeper(Pile& pile, const Stand& stand, const report::RunRecord& record, const Files& files,
+Keeper::Keeper(Bed& bed, const Stand& stand, const report::RunRecord& record, const Files& files,
                const Options& options, const Origin& origin)
-    : pile_(pile),
+    : bed_(bed),
       stand_(stand),
       record_(record),
       files_(files),
-      rhythm_(input::rhythm_of(pile.scene.in.checkpoint.every).value_or(input::Rhythm{})),
+      rhythm_(input::rhythm_of(bed.scene.in.checkpoint.every).value_or(input::Rhythm{})),
       limit_(std::min(options.max_hours > 0.0 ? options.max_hours * 3600.0 : never, slurm_seconds())),
-      last_step_(pile.steps),
-      step_limit_(options.max_steps > 0 ? pile.steps + options.max_steps : std::numeric_limits<std::int64_t>::max()),
+      last_step_(bed.steps),
+      step_limit_(options.max_steps > 0 ? bed.steps + options.max_steps : std::numeric_limits<std::int64_t>::max()),
       serial_(origin.serial),
       slot_(origin.next_slot) {}
 
 std::int64_t Keeper::steps_to_look() const {
-  std::int64_t steps = std::min(look_every, step_limit_ - pile_.steps);
-  if (rhythm_.steps > 0) steps = std::min(steps, last_step_ + rhythm_.steps - pile_.steps);
+  std::int64_t steps = std::min(look_every, step_limit_ - bed_.steps);
+  if (rhythm_.steps > 0) steps = std::min(steps, last_step_ + rhythm_.steps - bed_.steps);
   return std::max<std::int64_t>(steps, 1);
 }
 
@@ -64,7 +64,7 @@ bool Keeper::due_by_clock(double least) const {
   return rhythm_.seconds > 0.0 && watch_.seconds() - written_at_ >= std::min(rhythm_.seconds, least);
 }
 
-void Keeper::look() { look(due_by_clock(never) || (rhythm_.steps > 0 && pile_.steps - last_step_ >= rhythm_.steps)); }
+void Keeper::look() { look(due_by_clock(never) || (rhythm_.steps > 0 && bed_.steps - last_step_ >= rhythm_.steps)); }
 
 void Keeper::layer_ended() { look(due_by_clock(layer_interval) || rhythm_.steps > 0); }
 
@@ -72,7 +72,7 @@ void Keeper::look_while_inserting(LocalIndex before) {
   const Due due = agree(false);
   waits_ = waits_ || due.checkpoint;
   if (due.stop == Reason::none) return;
-  pile_.store.keep_first(before);
+  bed_.store.keep_first(before);
   stop(due.stop);
 }
 
@@ -84,17 +84,17 @@ Keeper::Due Keeper::agree(bool due) {
   const Wish wish = take_wish();
   std::array<std::int64_t, 2> shared{wish == Wish::checkpoint ? 1 : 0,
                                      static_cast<std::int64_t>(wish == Wish::stop ? Reason::signal : Reason::none)};
-  if (pile_.comm.rank() == 0) {
+  if (bed_.comm.rank() == 0) {
     if (due) shared[0] = 1;
     shared[1] = std::max(shared[1], static_cast<std::int64_t>(reason_to_stop()));
   }
-  pile_.comm.max(shared);
+  bed_.comm.max(shared);
   return {.checkpoint = shared[0] != 0, .stop = static_cast<Reason>(shared[1])};
 }
 
 void Keeper::look(bool due) {
   const Due now = agree(due || waits_);
-  if (now.stop != Reason::none || now.checkpoint) pile_.check();  // nothing is written by a state that is not sound
+  if (now.stop != Reason::none || now.checkpoint) bed_.check();  // nothing is written by a state that is not valid
   if (now.stop != Reason::none) stop(now.stop);
   if (!now.checkpoint) return;
   waits_ = false;
@@ -107,7 +107,7 @@ void Keeper::look(bool due) {
 }
 
 Keeper::Reason Keeper::reason_to_stop() {
-  if (pile_.steps >= step_limit_) return Reason::step_limit;
+  if (bed_.steps >= step_limit_) return Reason::step_limit;
   if (out_of_time()) return Reason::time_limit;
   return stop_file_there() ? Reason::stop_file : Reason::none;
 }
@@ -126,23 +126,23 @@ bool Keeper::stop_file_there() {
 void Keeper::write() {
   const Stopwatch watch;
   const pack::RunState state{.serial = serial_,
-                             .effective_input = pile_.scene.in.effective,
+                             .effective_input = bed_.scene.in.effective,
                              .version = std::string(version()),
                              .git = std::string(git_id()),
-                             .dimension = pile_.scene.box.dimension,
-                             .rotation = pile_.scene.features.rotation,
-                             .first_ids = pile_.first_ids,
-                             .count = pile_.count,
-                             .energy_given = pile_.energy_given,
-                             .steps = pile_.steps,
-                             .particle_steps = pile_.particle_steps(),
+                             .dimension = bed_.scene.box.dimension,
+                             .rotation = bed_.scene.features.rotation,
+                             .first_ids = bed_.first_ids,
+                             .count = bed_.count,
+                             .energy_given = bed_.energy_given,
+                             .steps = bed_.steps,
+                             .particle_steps = bed_.particle_steps(),
                              .layers = record_.layers,
-                             .creep = record_.creep,
-                             .moving_from = pile_.moving_from,
+                             .compaction_rate = record_.compaction_rate,
+                             .moving_from = bed_.moving_from,
                              .height = record_.height,
-                             .thaws = record_.thaws,
-                             .thaw_steps = pile_.thaw_steps,
-                             .height_before_thaw = record_.height_before_thaw,
+                             .relaxations = record_.relaxations,
+                             .relaxation_steps = bed_.relaxation_steps,
+                             .height_before_relaxation = record_.height_before_relaxation,
                              .phase = stand_.phase,
                              .row = stand_.row,
                              .done = stand_.course.done,
@@ -150,43 +150,43 @@ void Keeper::write() {
                              .mean_height = stand_.course.mean_height,
                              .calm_since = stand_.course.calm_since,
                              .phi_calm = stand_.course.phi_calm};
-  const std::array<const particles::Store*, 2> stores{&pile_.store, &pile_.neighborhood.frozen()};
-  pack::write_checkpoint(pile_.comm, files_.slots[slot_], stores, state);
+  const std::array<const particles::Store*, 2> stores{&bed_.store, &bed_.neighborhood.frozen()};
+  pack::write_checkpoint(bed_.comm, files_.slots[slot_], stores, state);
   disk::write_text(
-      pile_.comm, files_.manifest,
+      bed_.comm, files_.manifest,
       fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 1, \"newest\": \"{}\", "
                   "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",
-                  "AB"[slot_], serial_, pile_.first_ids.size(), phase_name(stand_.phase), pile_.steps, pile_.count));
-  const double took = pile_.comm.max(watch.seconds());
-  log::debug(fmt::format("checkpoint {} at step {}: {}", files_.slots[slot_], pile_.steps, text::duration(took)));
+                  "AB"[slot_], serial_, bed_.first_ids.size(), phase_name(stand_.phase), bed_.steps, bed_.count));
+  const double took = bed_.comm.max(watch.seconds());
+  log::debug(fmt::format("checkpoint {} at step {}: {}", files_.slots[slot_], bed_.steps, text::duration(took)));
   ++serial_;
   slot_ = 1 - slot_;
   longest_write_ = std::max(longest_write_, took);
   written_at_ = looked_at_ = watch_.seconds();
-  last_step_ = pile_.steps;
+  last_step_ = bed_.steps;
   kept_ = true;
 }
 
 void Keeper::keep_going_without(const std::string& words) {
   kept_ = false;
-  log::warn(fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", pile_.steps, words));
+  log::warn(fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", bed_.steps, words));
   written_at_ = looked_at_ = watch_.seconds();
-  last_step_ = pile_.steps;
+  last_step_ = bed_.steps;
 }
 
 void Keeper::stop(Reason reason) {
-  if (!kept_ || last_step_ != pile_.steps) write();
+  if (!kept_ || last_step_ != bed_.steps) write();
   constexpr std::array<const char*, 5> words{"", "a signal asked for it", "the STOP file is there",
                                              "the time limit is near", "--max-steps are done"};
   throw Error(
       ExitCode::stopped_early,
-      fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", pile_.steps,
-                  pile_.first_ids.size(), files_.slots[1 - slot_], words.at(static_cast<std::size_t>(reason))));
+      fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", bed_.steps,
+                  bed_.first_ids.size(), files_.slots[1 - slot_], words.at(static_cast<std::size_t>(reason))));
 }
 
 void Keeper::finished() {
-  comm::agree_on(pile_.comm, [&] {
-    if (pile_.comm.rank() == 0) remove_checkpoints(files_);
+  comm::agree_on(bed_.comm, [&] {
+    if (bed_.comm.rank() == 0) remove_checkpoints(files_);
   });
 }
 

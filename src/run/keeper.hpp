@@ -7,10 +7,10 @@
 #include "base/timer.hpp"
 #include "base/types.hpp"
 #include "input/rhythm.hpp"
+#include "run/bed.hpp"
 #include "run/course.hpp"
 #include "run/files.hpp"
 #include "run/options.hpp"
-#include "run/pile.hpp"
 #include "run/restart.hpp"
 
 namespace packmpi::run {
@@ -19,13 +19,13 @@ namespace packmpi::run {
 /// it is given must outlive it.
 class Keeper {
  public:
-  Keeper(Pile& pile, const Stand& stand, const report::RunRecord& record, const Files& files, const Options& options,
+  Keeper(Bed& bed, const Stand& stand, const report::RunRecord& record, const Files& files, const Options& options,
          const Origin& origin);
 
   /// Steps to make until the next look(); the same on all ranks, at least 1.
   [[nodiscard]] std::int64_t steps_to_look() const;
   /// Collective. Writes a checkpoint if one is due or asked for. Throws Error(stopped_early) on all ranks after writing
-  /// one, if the run is to end; Error(numerical_failure), and writes nothing, if the state is not sound. A checkpoint
+  /// one, if the run is to end; Error(numerical_failure), and writes nothing, if the state is not valid. A checkpoint
   /// that cannot be written is an error only then; else it is a warning, and the old ones stay. Cost: one reduction.
   void look();
   /// Collective. The same at the end of a layer, where a checkpoint is due sooner.
@@ -53,7 +53,7 @@ class Keeper {
   void keep_going_without(const std::string& words);
   [[noreturn]] void stop(Reason reason);
 
-  Pile& pile_;
+  Bed& bed_;
   const Stand& stand_;
   const report::RunRecord& record_;
   const Files& files_;

@@ -14,12 +14,12 @@
 #include "report/report.hpp"
 #include "rsa/insert.hpp"
 #include "run/analyze.hpp"
+#include "run/bed.hpp"
 #include "run/counters.hpp"
 #include "run/course.hpp"
 #include "run/files.hpp"
 #include "run/journal.hpp"
 #include "run/keeper.hpp"
-#include "run/pile.hpp"
 #include "run/record.hpp"
 #include "run/restart.hpp"
 #include "run/settle.hpp"
@@ -29,135 +29,135 @@
 namespace packmpi::run {
 namespace {
 
-void insert_layer(Pile& pile, Keeper& keeper, report::LayerRow& row) {
-  const scene::Scene& scene = pile.scene;
-  pile.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(pile.first_ids.size()),
-                                .bottom = pile.top(),
+void insert_layer(Bed& bed, Keeper& keeper, report::LayerRow& row) {
+  const scene::Scene& scene = bed.scene;
+  bed.store.set_ghosts(0);
+  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.first_ids.size()),
+                                .bottom = bed.top(),
                                 .thickness = scene.in.layers.thickness,
-                                .first_id = pile.count};
-  const LocalIndex before = pile.store.owned();
+                                .first_id = bed.count};
+  const LocalIndex before = bed.store.owned();
   const auto look = [&] { keeper.look_while_inserting(before); };
   const Stopwatch watch;
-  const rsa::Insertion got = rsa::insert(pile.comm, scene, pile.ownership, region, pile.store, look);
-  pile.inserting += watch.seconds();
-  pile.first_ids.push_back(pile.count);
-  pile.energy_given += observe::energy_of(pile.comm, pile.store, scene, pile.count, pile.count + got.inserted);
-  pile.count += got.inserted;
+  const rsa::Insertion got = rsa::insert(bed.comm, scene, bed.ownership, region, bed.store, look);
+  bed.inserting += watch.seconds();
+  bed.first_ids.push_back(bed.count);
+  bed.energy_given += observe::energy_of(bed.comm, bed.store, scene, bed.count, bed.count + got.inserted);
+  bed.count += got.inserted;
   row.inserted = got.inserted;
-  row.attempts = got.darts;
-  row.total = pile.count;
-  row.fraction_asked = scene.in.layers.fraction;
-  row.fraction_got = got.solid_volume / (scene.box.floor_area() * region.thickness);
+  row.attempts = got.trials;
+  row.total = bed.count;
+  row.target_fraction = scene.in.layers.fraction;
+  row.achieved_fraction = got.solid_volume / (scene.box.floor_area() * region.thickness);
   row.region_bottom = region.bottom;
 }
 
-void settle_layer(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  const Settled settled = settle(pile, journal, keeper, Part::layer, stand.course);
-  record.creep = settled.creep;
+void settle_layer(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+  const Settled settled = settle(bed, journal, keeper, Part::layer, stand.course);
+  record.compaction_rate = settled.compaction_rate;
   stand.row.steps = settled.steps;
   stand.row.duration = settled.seconds;
   stand.row.stop_reason = settled.early ? "settled" : "duration";
 }
 
-void measure_layer(const Pile& pile, report::LayerRow& row) {
-  const scene::Scene& scene = pile.scene;
-  const observe::Contacts contacts = observe::contacts(pile.comm, pile.store, scene, pile.neighborhood.pairs(),
-                                                       pile.neighborhood.walls(), pile.moving_from);
-  const observe::Motion motion = observe::motion(pile.comm, pile.store, scene);
-  row.height = pile.height();
-  row.top = pile.top();
+void measure_layer(const Bed& bed, report::LayerRow& row) {
+  const scene::Scene& scene = bed.scene;
+  const observe::Contacts contacts = observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(),
+                                                       bed.neighborhood.walls(), bed.moving_from);
+  const observe::Motion motion = observe::motion(bed.comm, bed.store, scene);
+  row.height = bed.height();
+  row.top = bed.top();
   row.max_overlap = contacts.max_overlap;
   row.coordination = contacts.coordination;
   const double mgd = motion.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
   row.kinetic_per_mgd = mgd > 0.0 ? motion.kinetic_energy / mgd : 0.0;
 }
 
-// The final stage: every particle moves for scene.thaw. The height is that after it.
-void thaw(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  if (!(pile.scene.thaw > 0.0) && pile.moving_from == 0) return;
-  pile.thaw();
-  pile.balance();
-  journal.thaw_started();
-  record.height_before_thaw = record.height;
-  if (pile.scene.thaw > 0.0) {
-    record.creep = settle(pile, journal, keeper, Part::thaw, stand.course).creep;
+// The final stage: every particle moves for scene.relaxation. The height is that after it.
+void relax(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+  if (!(bed.scene.relaxation > 0.0) && bed.moving_from == 0) return;
+  bed.release();
+  bed.balance();
+  journal.relaxation_started();
+  record.height_before_relaxation = record.height;
+  if (bed.scene.relaxation > 0.0) {
+    record.compaction_rate = settle(bed, journal, keeper, Part::relaxation, stand.course).compaction_rate;
   }
-  ++record.thaws;
-  record.height = pile.height();
-  journal.thawed(record.height);
+  ++record.relaxations;
+  record.height = bed.height();
+  journal.relaxed(record.height);
 }
 
-void insert_and_settle(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+void insert_and_settle(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
   if (stand.phase == pack::Phase::insertion) {
-    insert_layer(pile, keeper, stand.row);
-    pile.freeze_older();
-    pile.balance();
+    insert_layer(bed, keeper, stand.row);
+    bed.freeze_older();
+    bed.balance();
     journal.layer_inserted(stand.row);
     stand.phase = pack::Phase::settling;
   }
-  settle_layer(pile, journal, keeper, stand, record);
-  measure_layer(pile, stand.row);
+  settle_layer(bed, journal, keeper, stand, record);
+  measure_layer(bed, stand.row);
   journal.layer_settled(stand.row);
   record.height = stand.row.height;
   record.layers.push_back(stand.row);
 }
 
-// What a pile sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
+// What a bed sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
 double sinks_by(const input::Input& in) {
   constexpr double rough = 0.3;
   if (in.dynamics.rotation) return 0.45;
   return in.contact.friction > rough ? 1.1 : 0.6;
 }
 
-// The pile's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
+// The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
 // too few costs a second final stage, in which all that lies there creeps again.
 double final_height(const scene::Scene& scene, const report::RunRecord& record) {
-  if (!(scene.thaw > 0.0) || record.layers.empty()) return record.height;
-  const bool over = record.thaws > 0 && record.height_before_thaw == record.layers.back().height;
+  if (!(scene.relaxation > 0.0) || record.layers.empty()) return record.height;
+  const bool over = record.relaxations > 0 && record.height_before_relaxation == record.layers.back().height;
   if (over) return record.height;
   return record.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
-// The loop of Algorithm 1, and the final stage; more layers if the pile sank in it. From where `stand` says.
+// The loop of Algorithm 1, and the final stage; more layers if the bed sank in it. From where `stand` says.
 // Bounded.
-void pile_up(Pile& pile, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  const std::int64_t most = scene::most_layers(pile.scene.in);
+void fill(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+  const std::int64_t most = scene::most_layers(bed.scene.in);
   const auto more = [&] {
-    return final_height(pile.scene, record) < record.height_asked &&
+    return final_height(bed.scene, record) < record.target_height &&
            static_cast<std::int64_t>(record.layers.size()) < most;
   };
   while (stand.phase != pack::Phase::insertion || more()) {
-    if (stand.phase == pack::Phase::thaw) {
-      thaw(pile, journal, keeper, stand, record);
+    if (stand.phase == pack::Phase::relaxation) {
+      relax(bed, journal, keeper, stand, record);
       stand = {};
     } else {
-      insert_and_settle(pile, journal, keeper, stand, record);
-      stand = {.phase = more() ? pack::Phase::insertion : pack::Phase::thaw};
+      insert_and_settle(bed, journal, keeper, stand, record);
+      stand = {.phase = more() ? pack::Phase::insertion : pack::Phase::relaxation};
     }
     keeper.layer_ended();
   }
-  record.reached = record.height >= record.height_asked;
+  record.reached = record.height >= record.target_height;
   record.stop_reason = record.reached ? "height" : "layers.maximum";
 }
 
-void write_outputs(const Pile& pile, const Files& files, report::RunRecord& record) {
+void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record) {
   const observe::Contacts contacts =
-      observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
+      observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   std::vector<pack::ContactRow> rows;
-  if (pile.scene.in.output.contacts) {
-    for (const observe::ContactForce& c : observe::contact_forces(pile.store, pile.scene, pile.neighborhood.pairs())) {
+  if (bed.scene.in.output.contacts) {
+    for (const observe::ContactForce& c : observe::contact_forces(bed.store, bed.scene, bed.neighborhood.pairs())) {
       rows.push_back({c.first, c.second, c.overlap, c.force});
     }
   }
-  const std::vector<std::int32_t> layers = pile.layers();
-  const pack::PackParts parts{.store = &pile.store,
+  const std::vector<std::int32_t> layers = bed.layers();
+  const pack::PackParts parts{.store = &bed.store,
                               .layer = layers,
                               .contacts = contacts.of_particle,
-                              .contact_rows = pile.scene.in.output.contacts ? &rows : nullptr};
-  pack::write_pack(pile.comm, files.pack, parts, record);
-  count(pile, contacts.pairs_here, record);
-  disk::write_text(pile.comm, files.summary, report::to_json(record));
+                              .contact_rows = bed.scene.in.output.contacts ? &rows : nullptr};
+  pack::write_pack(bed.comm, files.pack, parts, record);
+  count(bed, contacts.pairs_here, record);
+  disk::write_text(bed.comm, files.summary, report::to_json(record));
 }
 
 // How near the sizes are to those asked; one line of the log.
@@ -166,12 +166,12 @@ void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
   log::event("sizes",
              fmt::format("sizes: D50 by mass {:.4g} m, asked {:.4g}; Cu {:.3g}, asked {:.3g}; the curves differ by at "
                          "most {:.2g} by number, {:.2g} by mass",
-                         sizes.by_mass.got.d50, sizes.by_mass.asked.d50, sizes.by_mass.got.uniformity(),
-                         sizes.by_mass.asked.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
-             {{"d50_by_mass", sizes.by_mass.got.d50},
-              {"d50_by_mass_asked", sizes.by_mass.asked.d50},
-              {"cu_by_mass", sizes.by_mass.got.uniformity()},
-              {"cu_by_mass_asked", sizes.by_mass.asked.uniformity()},
+                         sizes.by_mass.achieved.d50, sizes.by_mass.target.d50, sizes.by_mass.achieved.uniformity(),
+                         sizes.by_mass.target.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
+             {{"d50_by_mass", sizes.by_mass.achieved.d50},
+              {"target_d50_by_mass", sizes.by_mass.target.d50},
+              {"cu_by_mass", sizes.by_mass.achieved.uniformity()},
+              {"target_cu_by_mass", sizes.by_mass.target.uniformity()},
               {"distance_by_number", sizes.by_number.distance},
               {"distance_by_mass", sizes.by_mass.distance}});
 }
@@ -181,20 +181,20 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   const Stopwatch watch;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
-  Pile pile(comm, scene);
-  report::RunRecord record = asked(comm, scene);
+  Bed bed(comm, scene);
+  report::RunRecord record = targets_of(comm, scene);
   Stand stand;
-  const Origin origin = resume(files, options, pile, stand, record);
-  Keeper keeper(pile, stand, record, files, options, origin);
-  Journal journal(pile, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted, record.layers);
-  pile_up(pile, journal, keeper, stand, record);
+  const Origin origin = resume(files, options, bed, stand, record);
+  Keeper keeper(bed, stand, record, files, options, origin);
+  Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted, record.layers);
+  fill(bed, journal, keeper, stand, record);
   journal.finish();
-  got(pile, record);
+  measure_bed(bed, record);
   tell_sizes(scene, record.sizes);
   record.wall_seconds = comm.max(watch.seconds());
   record.particle_steps_per_second =
-      static_cast<double>(record.particle_steps - pile.earlier_particle_steps) / record.wall_seconds;
-  write_outputs(pile, files, record);
+      static_cast<double>(record.particle_steps - bed.earlier_particle_steps) / record.wall_seconds;
+  write_outputs(bed, files, record);
   keeper.finished();
   return record;
 }
@@ -209,7 +209,7 @@ report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
 }
 
 bool targets_met(const report::RunRecord& record) {
-  constexpr double deepest = 0.5;  // of a radius: no sound pack has such overlaps
+  constexpr double deepest = 0.5;  // of a radius: no valid pack has such overlaps
   const report::Audit& audit = record.audit;
   return record.reached && audit.found == audit.expected && audit.non_finite == 0 && audit.outside == 0 &&
          audit.worst_overlap < deepest && audit.worst_wall_penetration < deepest;

@@ -71,29 +71,29 @@ std::vector<std::string> choices(const comm::Comm& comm, const Files& files, con
   return paths;
 }
 
-/// The first of `paths` that is sound to the last particle.
+/// The first of `paths` that is valid to the last particle.
 std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>& paths, std::string passed_over,
-                                                  Pile& pile) {
+                                                  Bed& bed) {
   for (const std::string& path : paths) {
     try {
-      pack::RunState state = pack::read_checkpoint(pile.comm, path, pile.store);
+      pack::RunState state = pack::read_checkpoint(bed.comm, path, bed.store);
       if (!passed_over.empty()) log::warn("passed over: " + passed_over);
       return {std::move(state), path};
     } catch (const Error& error) {  // on all ranks alike
       passed_over += fmt::format("{}{}", passed_over.empty() ? "" : "; ", error.what());
-      pile.store = particles::Store(pile.store.layout());
+      bed.store = particles::Store(bed.store.layout());
     }
   }
   throw Error(ExitCode::bad_checkpoint, passed_over);
 }
 
-void put_back(const pack::RunState& state, Pile& pile, Stand& stand, report::RunRecord& record) {
-  pile.first_ids = state.first_ids;
-  pile.count = state.count;
-  pile.energy_given = state.energy_given;
-  pile.steps = state.steps;
-  pile.thaw_steps = state.thaw_steps;
-  pile.earlier_particle_steps = state.particle_steps;
+void put_back(const pack::RunState& state, Bed& bed, Stand& stand, report::RunRecord& record) {
+  bed.first_ids = state.first_ids;
+  bed.count = state.count;
+  bed.energy_given = state.energy_given;
+  bed.steps = state.steps;
+  bed.relaxation_steps = state.relaxation_steps;
+  bed.earlier_particle_steps = state.particle_steps;
   stand = {.phase = state.phase,
            .row = state.row,
            .course = {.done = state.done,
@@ -102,14 +102,14 @@ void put_back(const pack::RunState& state, Pile& pile, Stand& stand, report::Run
                       .calm_since = state.calm_since,
                       .phi_calm = state.phi_calm}};
   record.layers = state.layers;
-  record.creep = state.creep;
+  record.compaction_rate = state.compaction_rate;
   record.height = state.height;
-  record.thaws = state.thaws;
-  record.height_before_thaw = state.height_before_thaw;
-  pile.neighborhood.rebuild(pile.store);  // to the owners of their columns
-  pile.moving_from = state.moving_from;
-  if (state.moving_from > 0) pile.neighborhood.freeze(pile.store, state.moving_from);
-  pile.balance();
+  record.relaxations = state.relaxations;
+  record.height_before_relaxation = state.height_before_relaxation;
+  bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
+  bed.moving_from = state.moving_from;
+  if (state.moving_from > 0) bed.neighborhood.freeze(bed.store, state.moving_from);
+  bed.balance();
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -131,26 +131,26 @@ std::int64_t next_serial(const Files& files, std::int64_t serial) {
 
 }  // namespace
 
-Origin resume(const Files& files, const Options& options, Pile& pile, Stand& stand, report::RunRecord& record) {
+Origin resume(const Files& files, const Options& options, Bed& bed, Stand& stand, report::RunRecord& record) {
   std::string passed_over;
   if (options.restart.empty()) return {};
-  const std::vector<std::string> paths = choices(pile.comm, files, options, pile.scene, passed_over);
+  const std::vector<std::string> paths = choices(bed.comm, files, options, bed.scene, passed_over);
   if (paths.empty()) {
     log::info(fmt::format("no checkpoint {}: from the beginning", files.slots[0]));
     return {};
   }
-  const auto [state, path] = read_first(paths, passed_over, pile);
+  const auto [state, path] = read_first(paths, passed_over, bed);
   if (state.version != version() || state.git != git_id()) {
     log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
                           state.version, state.git, version(), git_id()));
   }
-  put_back(state, pile, stand, record);
+  put_back(state, bed, stand, record);
   log::info(fmt::format("going on from {}: layer {}, step {}, {} particles", path, state.first_ids.size(), state.steps,
                         state.count));
-  const bool first = pile.comm.rank() == 0;
+  const bool first = bed.comm.rank() == 0;
   return {.restarted = true,
-          .serial = pile.comm.max(first ? next_serial(files, state.serial) : std::int64_t{0}),
-          .next_slot = pile.comm.max(std::int64_t{first && same_file(path, files.slots[0])}) > 0 ? 1U : 0U};
+          .serial = bed.comm.max(first ? next_serial(files, state.serial) : std::int64_t{0}),
+          .next_slot = bed.comm.max(std::int64_t{first && same_file(path, files.slots[0])}) > 0 ? 1U : 0U};
 }
 
 }  // namespace packmpi::run

@@ -45,8 +45,9 @@ std::string forbidden_changes(const std::string& before, const std::string& now)
     return found == values.end() ? std::string("absent") : found->second;
   };
   // More layers after the final stage are not the layers of a run that never had it.
-  const std::string window = shown(new_values, "dynamics.window"), thaw = shown(new_values, "dynamics.thaw");
-  const bool final_stage = window != "0" || (thaw != "\"auto\"" && thaw != "0.0");
+  const std::string window = shown(new_values, "dynamics.window"),
+                    relaxation = shown(new_values, "dynamics.relaxation");
+  const bool final_stage = window != "0" || (relaxation != "\"auto\"" && relaxation != "0.0");
   std::string words;
   for (const std::string& key : keys) {
     const std::string was = shown(old_values, key), is = shown(new_values, key);

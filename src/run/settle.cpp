@@ -12,8 +12,8 @@
 namespace packmpi::run {
 namespace {
 
-// Share of a part over which its creep is measured.
-constexpr double creep_share = 0.1;
+// Share of a part over which its compaction rate is measured.
+constexpr double rate_share = 0.1;
 // Looks at the criteria of stop = "settled" in the time for which they must hold.
 constexpr int looks_a_hold = 10;
 // 2^6 stairs of the hardening ramp: six square roots give the ratio.
@@ -29,7 +29,7 @@ struct Plan {
   std::int64_t steps;       // in all
   std::int64_t log_every;   // steps between rows of the step log
   std::int64_t look_every;  // steps between looks at the criteria; 0: none
-  std::int64_t creep_from;
+  std::int64_t rate_from;
   std::vector<double> ramp;  // moduli; the last one from half the steps on
 
   [[nodiscard]] std::int64_t ramp_start(std::size_t stair) const {
@@ -43,7 +43,7 @@ struct Plan {
   [[nodiscard]] std::int64_t next(std::int64_t done) const {
     std::int64_t stop = std::min(steps, (done / log_every + 1) * log_every);
     if (look_every > 0) stop = std::min(stop, (done / look_every + 1) * look_every);
-    if (done < creep_from) stop = std::min(stop, creep_from);
+    if (done < rate_from) stop = std::min(stop, rate_from);
     for (std::size_t stair = 1; stair < ramp.size(); ++stair) {
       if (ramp_start(stair) > done) return std::min(stop, ramp_start(stair));
     }
@@ -54,22 +54,22 @@ struct Plan {
 Plan plan_of(const scene::Scene& scene, Part part) {
   const bool layer = part == Part::layer;
   const scene::Stage stage = layer ? scene.settling : scene.last();
-  const double seconds = layer ? scene.in.layers.duration : scene.thaw;
+  const double seconds = layer ? scene.in.layers.duration : scene.relaxation;
   const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : stage.time_step;
   Plan plan{.stage = stage,
             .steps = steps_in(seconds, stage.time_step),
             .log_every = steps_in(interval, stage.time_step),
             .look_every = 0,
-            .creep_from = 0,
+            .rate_from = 0,
             .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
   if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
     plan.look_every = steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
   }
-  plan.creep_from = plan.steps - std::max<std::int64_t>(1, std::llround(creep_share * static_cast<double>(plan.steps)));
+  plan.rate_from = plan.steps - std::max<std::int64_t>(1, std::llround(rate_share * static_cast<double>(plan.steps)));
   return plan;
 }
 
-double phi_of_moving(const Pile& pile) { return observe::density(pile.comm, pile.store, pile.scene).phi_bulk; }
+double phi_of_moving(const Bed& bed) { return observe::density(bed.comm, bed.store, bed.scene).phi_bulk; }
 
 // One of the criteria of rest: what it measures, and below what it is met.
 struct Criterion {
@@ -79,57 +79,57 @@ struct Criterion {
 };
 
 // Says it when a criterion is met for the first time in this part (again after a restart).
-void tell(const Pile& pile, const Plan& plan, const Criterion& criterion, unsigned bit, Course& course) {
+void tell(const Bed& bed, const Plan& plan, const Criterion& criterion, unsigned bit, Course& course) {
   const double time = static_cast<double>(course.done) * plan.stage.time_step;
   log::debug(fmt::format("{} {:.2e} after {:.4g} s", criterion.words, criterion.value, time));
   if (!criterion.met() || (course.met & bit) != 0) return;
   course.met |= bit;
-  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", pile.first_ids.size(), criterion.words,
+  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", bed.first_ids.size(), criterion.words,
                         criterion.value, criterion.limit, time));
 }
 
 // Are all criteria met? The dear one, which costs about two steps, is looked at only if the others are.
-bool is_calm(const Pile& pile, const Plan& plan, Course& course) {
-  const input::Dynamics& limits = pile.scene.in.dynamics;
-  const double g = pile.scene.in.jamming.gravity;
-  const double d = 2.0 * pile.scene.sizes.mean();
-  const observe::Motion motion = observe::motion(pile.comm, pile.store, pile.scene);
+bool is_calm(const Bed& bed, const Plan& plan, Course& course) {
+  const input::Dynamics& limits = bed.scene.in.dynamics;
+  const double g = bed.scene.in.jamming.gravity;
+  const double d = 2.0 * bed.scene.sizes.mean();
+  const observe::Motion motion = observe::motion(bed.comm, bed.store, bed.scene);
   const double time = static_cast<double>(plan.look_every) * plan.stage.time_step;
   const double drift = std::abs(motion.mean_height - course.mean_height) / time / std::sqrt(g * d);
   course.mean_height = motion.mean_height;
   const Criterion energy{"KE/(m g d)", motion.kinetic_energy / (motion.mass * g * d), limits.settled_energy};
   const Criterion sinking{"drift/sqrt(g d)", drift, limits.settled_drift};
-  tell(pile, plan, energy, 1, course);
-  tell(pile, plan, sinking, 2, course);
+  tell(bed, plan, energy, 1, course);
+  tell(bed, plan, sinking, 2, course);
   if (!energy.met() || !sinking.met()) return false;
-  const double ratio = observe::unbalanced_force(pile.comm, pile.store, pile.scene, pile.stepper.law(),
-                                                 pile.neighborhood, pile.moving_from);
+  const double ratio =
+      observe::unbalanced_force(bed.comm, bed.store, bed.scene, bed.stepper.law(), bed.neighborhood, bed.moving_from);
   const Criterion balance{"unbalanced force ratio", ratio, limits.settled_force};
-  tell(pile, plan, balance, 4, course);
+  tell(bed, plan, balance, 4, course);
   return balance.met();
 }
 
 // Looks whether the moving particles have come to rest, and for how long. True if long enough.
-bool has_settled(const Pile& pile, const Plan& plan, Course& course) {
-  if (!is_calm(pile, plan, course)) {
+bool has_settled(const Bed& bed, const Plan& plan, Course& course) {
+  if (!is_calm(bed, plan, course)) {
     course.calm_since = -1;
     return false;
   }
   if (course.calm_since < 0) {
     course.calm_since = course.done;
-    course.phi_calm = phi_of_moving(pile);
+    course.phi_calm = phi_of_moving(bed);
   }
   return static_cast<double>(course.done - course.calm_since) * plan.stage.time_step >=
-         pile.scene.in.dynamics.settled_hold * (1.0 - 1e-9);
+         bed.scene.in.dynamics.settled_hold * (1.0 - 1e-9);
 }
 
-Settled result(const Pile& pile, const Plan& plan, const Course& course, bool early) {
+Settled result(const Bed& bed, const Plan& plan, const Course& course, bool early) {
   const double before = early ? course.phi_calm : course.phi_before;
-  const std::int64_t since = early ? course.calm_since : plan.creep_from;
+  const std::int64_t since = early ? course.calm_since : plan.rate_from;
   const double time = static_cast<double>(course.done - since) * plan.stage.time_step;
   return {.steps = course.done,
           .seconds = static_cast<double>(course.done) * plan.stage.time_step,
-          .creep = (phi_of_moving(pile) - before) / time,
+          .compaction_rate = (phi_of_moving(bed) - before) / time,
           .early = early};
 }
 
@@ -147,30 +147,30 @@ std::vector<double> hardening(double soft, double hard) {
   return moduli;
 }
 
-Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& course) {
-  const Plan plan = plan_of(pile.scene, part);
+Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part, Course& course) {
+  const Plan plan = plan_of(bed.scene, part);
   if (plan.look_every > 0 && course.done == 0) {
-    course.mean_height = observe::motion(pile.comm, pile.store, pile.scene).mean_height;
+    course.mean_height = observe::motion(bed.comm, bed.store, bed.scene).mean_height;
   }
   bool early = false;
   while (course.done < plan.steps && !early) {
-    if (course.done == plan.creep_from) course.phi_before = phi_of_moving(pile);
+    if (course.done == plan.rate_from) course.phi_before = phi_of_moving(bed);
     const std::int64_t next = std::min(plan.next(course.done), course.done + keeper.steps_to_look());
-    pile.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
+    bed.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
     const Stopwatch watch;
-    pile.stepper.advance(pile.store, pile.neighborhood, next - course.done, pile.moment());
-    pile.stepping += watch.seconds();
-    pile.steps += next - course.done;
-    if (part == Part::thaw) pile.thaw_steps += next - course.done;
+    bed.stepper.advance(bed.store, bed.neighborhood, next - course.done, bed.moment());
+    bed.stepping += watch.seconds();
+    bed.steps += next - course.done;
+    if (part == Part::relaxation) bed.relaxation_steps += next - course.done;
     course.done = next;
-    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(pile, plan, course);
+    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan, course);
     if (next % plan.log_every == 0 || next == plan.steps || early) {
       journal.moment(static_cast<double>(next) / static_cast<double>(plan.steps));
     }
     if (!early) keeper.look();  // a part that is over goes on with what comes after it
   }
-  pile.check();  // what comes next takes all particles to be sound
-  return result(pile, plan, course, early);
+  bed.check();  // what comes next takes all particles to be valid
+  return result(bed, plan, course, early);
 }
 
 }  // namespace packmpi::run

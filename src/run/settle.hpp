@@ -4,28 +4,28 @@
 #include <span>
 #include <vector>
 
+#include "run/bed.hpp"
 #include "run/course.hpp"
 #include "run/journal.hpp"
 #include "run/keeper.hpp"
-#include "run/pile.hpp"
 
 namespace packmpi::run {
 
 /// A layer's dynamics (the newest layers move, at scene.settling) or the final stage (all move, at scene.last(), after
 /// hardening).
-enum class Part { layer, thaw };
+enum class Part { layer, relaxation };
 
 /// What a part came to.
 struct Settled {
   std::int64_t steps = 0;
-  double seconds = 0.0;  ///< simulated
-  double creep = 0.0;    ///< change of phi_bulk a second at its end [1/s]
-  bool early = false;    ///< the criteria of stop = "settled" held before the duration was over
+  double seconds = 0.0;          ///< simulated
+  double compaction_rate = 0.0;  ///< change of phi_bulk a second at its end [1/s]
+  bool early = false;            ///< the criteria of stop = "settled" held before the duration was over
 };
 
 /// Collective. Integrates a part of the run from `course` on to its end; `keeper` may end it, by an Error, before. What
-/// is frozen adds nothing to the creep.
-[[nodiscard]] Settled settle(Pile& pile, Journal& journal, Keeper& keeper, Part part, Course& course);
+/// is frozen adds nothing to the compaction rate.
+[[nodiscard]] Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part, Course& course);
 
 /// Steps of a part at most; fewer if stop = "settled" ends it. Local.
 [[nodiscard]] std::int64_t steps_of(const scene::Scene& scene, Part part);

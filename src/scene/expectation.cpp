@@ -84,7 +84,7 @@ double uneven_volumes(const Scene& scene) {
 
 }  // namespace
 
-PileFraction expected_fraction(const Scene& scene) {
+BedFraction expected_fraction(const Scene& scene) {
   const bool spin = scene.in.dynamics.rotation;
   const bool flat = scene.box.dimension == 2;
   const ByFriction& equal = flat ? (spin ? discs : discs_without_spin) : (spin ? spheres : spheres_without_spin);

@@ -1,4 +1,4 @@
-/// What a scene comes to, before it is run: the solid fraction of its pile, its layers and its particles. Estimates,
+/// What a scene comes to, before it is run: the solid fraction of its bed, its layers and its particles. Estimates,
 /// from what packs came to that were made (doc/estimate.md).
 #pragma once
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace packmpi::scene {
 
-/// Solid volume of a settled pile over floor area times height, the height by layers.height; and what it may be off by.
-struct PileFraction {
+/// Solid volume of a settled bed over floor area times height, the height by layers.height; and what it may be off by.
+struct BedFraction {
   double value = 0.0;
   double error = 0.0;
 };
 /// Known: spheres and discs, with and without rotation, at friction 0, 0.2 and 0.5, between which it is linear; wider
 /// size distributions are added by their standard deviation and skewness. Local, pure.
-[[nodiscard]] PileFraction expected_fraction(const Scene& scene);
+[[nodiscard]] BedFraction expected_fraction(const Scene& scene);
 
 /// Particles that fill a layer to its fraction; exact for equal radii, else the mean over seeds. Local, pure.
 [[nodiscard]] std::int64_t particles_a_layer(const Scene& scene);
@@ -23,7 +23,7 @@ struct PileFraction {
 /// sqrt(N) times the coefficient of variation of the volume (renewal theory, for many); 0 for equal radii.
 [[nodiscard]] double deviation_of_count(const Scene& scene, double particles);
 
-/// Height [m] by which a layer raises a pile of this solid fraction.
+/// Height [m] by which a layer raises a bed of this solid fraction.
 [[nodiscard]] double rise_of_layer(const Scene& scene, double fraction);
 
 /// Layers that fill the scene's height at this solid fraction; layers.maximum at most.

@@ -87,9 +87,9 @@ void check_periodic(const input::Input& in, const Scene& scene) {
 }
 
 // What a window left frozen needs a time of its own to come to rest under what was put onto it (doc/theory.md).
-double choose_thaw(const input::Input& in) {
+double choose_relaxation(const input::Input& in) {
   constexpr double usual = 0.9;  // [s]
-  return in.dynamics.thaw.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
+  return in.dynamics.relaxation.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
 }
 
 Features features_of(const input::Input& in) {
@@ -150,7 +150,7 @@ Scene build(const input::Input& in) {
   scene.time_step =
       choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
   scene.settling = choose_settling(in, scene.sizes, scene.time_step);
-  scene.thaw = choose_thaw(in);
+  scene.relaxation = choose_relaxation(in);
   if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
   check_periodic(in, scene);
   scene.most_columns = most_columns(scene);

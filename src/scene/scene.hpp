@@ -37,14 +37,14 @@ struct Scene {
   input::Input in;
   geometry::Box box;
   Features features;
-  Sizes sizes;             ///< the size distribution: radius of (layer, particle), bounds
-  double reach = 0.0;      ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
-  double skin = 0.0;       ///< [m] added to reach in neighbour lists; does not change any result
-  double time_step = 0.0;  ///< [s] of the final stage, and of the layers unless they have their own
-  Stage settling;          ///< of the layers
-  double thaw = 0.0;       ///< [s] duration of the final stage
+  Sizes sizes;              ///< the size distribution: radius of (layer, particle), bounds
+  double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
+  double skin = 0.0;        ///< [m] added to reach in neighbour lists; does not change any result
+  double time_step = 0.0;   ///< [s] of the final stage, and of the layers unless they have their own
+  Stage settling;           ///< of the layers
+  double relaxation = 0.0;  ///< [s] duration of the final stage
   double force_quantum = 0.0;     ///< [N] a power of two: forces are summed as integers of this unit
-  double speed_bound = 0.0;       ///< [m/s] no particle of a sound run is as fast
+  double speed_bound = 0.0;       ///< [m/s] no particle of a valid run is as fast
   std::int64_t most_columns = 1;  ///< of the lateral grid: memory for empty ground is bounded (doc/theory.md)
 
   /// Width the columns of the lateral grid need at least: reach + skin [m].

@@ -45,7 +45,7 @@ TEST(Random, WordsAreTheKnownAnswer) {
 }
 
 TEST(Random, NameIsPackedAsDocumented) {
-  const Name name{0x0123456789abcdefULL, Purpose::dart, 0xabcdefU, 0x123456789abcULL, 0xdeadbeefU};
+  const Name name{0x0123456789abcdefULL, Purpose::trial, 0xabcdefU, 0x123456789abcULL, 0xdeadbeefU};
   const auto block = [&](std::uint32_t b) {
     return pair_words(philox_oracle({0x56789abcU, 0x1234U | 2U << 16U | b << 24U, 0xabcdefU, 0xdeadbeefU},
                                     {0x89abcdefU, 0x01234567U}));
@@ -77,7 +77,7 @@ std::vector<Name> sample_of_names() {
   std::vector<Name> names;
   const std::array<std::uint64_t, 5> particles{0, 1, 255, std::uint64_t{1} << 32U, (std::uint64_t{1} << 48U) - 1};
   for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 32U, ~std::uint64_t{0}}) {
-    for (const Purpose purpose : {Purpose::radius, Purpose::dart, Purpose::test}) {
+    for (const Purpose purpose : {Purpose::radius, Purpose::trial, Purpose::test}) {
       for (const std::uint32_t layer : {0U, 1U, 2U, 256U, 65536U, (1U << 24U) - 1}) {
         for (const std::uint64_t particle : particles) {
           for (const std::uint32_t attempt : {0U, 1U, 2U, 65536U, ~0U}) {

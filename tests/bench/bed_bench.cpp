@@ -17,7 +17,7 @@
 #include "comm/session.hpp"
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi {
@@ -56,84 +56,84 @@ struct Grain {
 std::vector<Grain> settled_brick(const input::Input& in) {
   const comm::Comm self(MPI_COMM_SELF);
   const scene::Scene scene = scene::build(in);
-  run::Pile pile(self, scene);
+  run::Bed bed(self, scene);
   for (int layer = 0; layer < brick_layers; ++layer) {
-    pile.store.set_ghosts(0);
-    const rsa::LayerRegion region{static_cast<std::uint32_t>(layer), observe::top(self, pile.store, scene),
-                                  in.layers.thickness, pile.count};
-    pile.count += rsa::insert(self, scene, pile.ownership, region, pile.store).inserted;
-    pile.neighborhood.rebuild(pile.store);
-    pile.stepper.advance(pile.store, pile.neighborhood, 6000);
+    bed.store.set_ghosts(0);
+    const rsa::LayerRegion region{static_cast<std::uint32_t>(layer), observe::top(self, bed.store, scene),
+                                  in.layers.thickness, bed.count};
+    bed.count += rsa::insert(self, scene, bed.ownership, region, bed.store).inserted;
+    bed.neighborhood.rebuild(bed.store);
+    bed.stepper.advance(bed.store, bed.neighborhood, 6000);
   }
   std::vector<Grain> grains;
-  for (LocalIndex i = 0; i < pile.store.owned(); ++i) grains.push_back({pile.store.position(i), pile.store.radius(i)});
+  for (LocalIndex i = 0; i < bed.store.owned(); ++i) grains.push_back({bed.store.position(i), bed.store.radius(i)});
   return grains;
 }
 
 // Tiles the brick over the columns of this rank, without what would stand in the side walls.
-void lay_out(run::Pile& pile, const std::vector<Grain>& brick, int tiles) {
+void lay_out(run::Bed& bed, const std::vector<Grain>& brick, int tiles) {
   const double side = brick_side * tiles;
   GlobalId id = 0;
   for (int tile = 0; tile < tiles * tiles; ++tile) {
     for (const Grain& grain : brick) {
       const Vec3 x{grain.x[0] + brick_side * (tile % tiles), grain.x[1] + brick_side * (tile / tiles), grain.x[2]};
       if (std::min(x[0], x[1]) < grain.r || std::max(x[0], x[1]) > side - grain.r) continue;
-      if (pile.ownership.owner(pile.ownership.grid().column(x)) == pile.comm.rank()) {
-        pile.store.add(id, x, grain.r, {}, {});
+      if (bed.ownership.owner(bed.ownership.grid().column(x)) == bed.comm.rank()) {
+        bed.store.add(id, x, grain.r, {}, {});
       }
       ++id;
     }
   }
-  pile.count = id;
-  pile.neighborhood.rebuild(pile.store);
+  bed.count = id;
+  bed.neighborhood.rebuild(bed.store);
 }
 
 // The bed as a LAMMPS data file of style sphere.
-void write_data(const run::Pile& pile, const char* path) {
+void write_data(const run::Bed& bed, const char* path) {
   std::ofstream out(path);
-  const double side = pile.scene.box.size[0];
-  out << "bed of packmpi: units si\n\n" << pile.count << " atoms\n1 atom types\n\n";
+  const double side = bed.scene.box.size[0];
+  out << "bed of packmpi: units si\n\n" << bed.count << " atoms\n1 atom types\n\n";
   out << fmt::format("-0.005 {0} xlo xhi\n-0.005 {0} ylo yhi\n-0.005 0.8 zlo zhi\n\nAtoms\n\n", side + 0.005);
-  for (LocalIndex i = 0; i < pile.store.owned(); ++i) {
-    const Vec3 x = pile.store.position(i);
-    out << fmt::format("{} 1 {:.17g} 1000 {:.17g} {:.17g} {:.17g}\n", pile.store.ids()[static_cast<std::size_t>(i)] + 1,
-                       2.0 * pile.store.radius(i), x[0], x[1], x[2]);
+  for (LocalIndex i = 0; i < bed.store.owned(); ++i) {
+    const Vec3 x = bed.store.position(i);
+    out << fmt::format("{} 1 {:.17g} 1000 {:.17g} {:.17g} {:.17g}\n", bed.store.ids()[static_cast<std::size_t>(i)] + 1,
+                       2.0 * bed.store.radius(i), x[0], x[1], x[2]);
   }
 }
 
 // The ledger of a row of the step log, in steps; looked at at the default interval it must not show.
-double ledger_in_steps(const run::Pile& pile, double steps_per_second) {
+double ledger_in_steps(const run::Bed& bed, double steps_per_second) {
   std::vector<double> seconds;
   for (int k = 0; k < 5; ++k) {
     const double start = MPI_Wtime();
-    (void)observe::ledger(pile.comm, pile.store, pile.scene, pile.stepper.law(), pile.neighborhood);
-    seconds.push_back(pile.comm.max(MPI_Wtime() - start));
+    (void)observe::ledger(bed.comm, bed.store, bed.scene, bed.stepper.law(), bed.neighborhood);
+    seconds.push_back(bed.comm.max(MPI_Wtime() - start));
   }
   return *std::ranges::min_element(seconds) * steps_per_second;
 }
 
-void measure(run::Pile& pile, std::int64_t steps, int runs) {
+void measure(run::Bed& bed, std::int64_t steps, int runs) {
   std::vector<double> rates;
-  const std::int64_t rebuilds = pile.neighborhood.rebuilds();
+  const std::int64_t rebuilds = bed.neighborhood.rebuilds();
   for (int k = 0; k < runs; ++k) {
-    pile.comm.barrier();
+    bed.comm.barrier();
     const double start = MPI_Wtime();
-    pile.stepper.advance(pile.store, pile.neighborhood, steps);
-    const double seconds = pile.comm.max(MPI_Wtime() - start);
-    rates.push_back(static_cast<double>(pile.count) * static_cast<double>(steps) / seconds / pile.comm.size());
+    bed.stepper.advance(bed.store, bed.neighborhood, steps);
+    const double seconds = bed.comm.max(MPI_Wtime() - start);
+    rates.push_back(static_cast<double>(bed.count) * static_cast<double>(steps) / seconds / bed.comm.size());
   }
   std::ranges::sort(rates);
   const observe::Contacts contacts =
-      observe::contacts(pile.comm, pile.store, pile.scene, pile.neighborhood.pairs(), pile.neighborhood.walls());
-  const double bytes = pile.bytes_per_particle();
+      observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
+  const double bytes = bed.bytes_per_particle();
   const double median = rates[rates.size() / 2];
-  const double row = ledger_in_steps(pile, median * pile.comm.size() / static_cast<double>(pile.count));
-  if (pile.comm.rank() != 0) return;
+  const double row = ledger_in_steps(bed, median * bed.comm.size() / static_cast<double>(bed.count));
+  if (bed.comm.rank() != 0) return;
   fmt::print(
       "{} particles on {} ranks ({}), coordination {:.2f}, {:.2f} listed pairs a particle, {} rebuilds in {} steps\n",
-      pile.count, pile.comm.size(), dynamics::kernel_architecture(), contacts.coordination,
-      static_cast<double>(pile.neighborhood.pairs().first.size()) / pile.store.owned(),
-      pile.neighborhood.rebuilds() - rebuilds, steps * runs);
+      bed.count, bed.comm.size(), dynamics::kernel_architecture(), contacts.coordination,
+      static_cast<double>(bed.neighborhood.pairs().first.size()) / bed.store.owned(),
+      bed.neighborhood.rebuilds() - rebuilds, steps * runs);
   fmt::print("particle-steps/s a core: median {:.2f}e6, least {:.2f}e6, most {:.2f}e6; {:.0f} bytes a particle\n",
              median * 1e-6, rates.front() * 1e-6, rates.back() * 1e-6, bytes);
   fmt::print("the ledger of a row of the step log costs {:.2f} steps\n", row);
@@ -155,10 +155,10 @@ int main(int argc, char** argv) {
   const int tiles =
       std::max(1, static_cast<int>(std::lround(std::sqrt(particles / static_cast<double>(brick.size())))));
   const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, sd));
-  run::Pile pile(comm, scene);
-  lay_out(pile, brick, tiles);
-  pile.stepper.advance(pile.store, pile.neighborhood, 1000);  // small tiles' seams and the first rebuilds
-  if (argc > 6 && comm.size() == 1) write_data(pile, argv[6]);
-  measure(pile, steps, runs);
+  run::Bed bed(comm, scene);
+  lay_out(bed, brick, tiles);
+  bed.stepper.advance(bed.store, bed.neighborhood, 1000);  // small tiles' seams and the first rebuilds
+  if (argc > 6 && comm.size() == 1) write_data(bed, argv[6]);
+  measure(bed, steps, runs);
   return 0;
 }

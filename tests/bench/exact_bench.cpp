@@ -13,7 +13,7 @@
 #include "input/time_step.hpp"
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "scene/limits.hpp"
 #include "support/scenes.hpp"
 #include "support/tiny_world.hpp"
@@ -190,15 +190,15 @@ double ledger(double dt) {
   in.dynamics.time_step = dt;
   const comm::Comm comm(MPI_COMM_WORLD);
   const scene::Scene scene = scene::build(in);
-  run::Pile pile(comm, scene);
-  pile.count = rsa::insert(comm, scene, pile.ownership, {0, 0.3, in.layers.thickness, 0}, pile.store).inserted;
-  pile.first_ids = {0};
-  const double given = observe::energy_of(comm, pile.store, scene, 0, pile.count);
-  pile.neighborhood.rebuild(pile.store);
+  run::Bed bed(comm, scene);
+  bed.count = rsa::insert(comm, scene, bed.ownership, {0, 0.3, in.layers.thickness, 0}, bed.store).inserted;
+  bed.first_ids = {0};
+  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+  bed.neighborhood.rebuild(bed.store);
   double worst = 0.0;
   for (int k = 0; k < 40; ++k) {
-    pile.stepper.advance(pile.store, pile.neighborhood, std::llround(0.01 / dt));
-    const observe::Ledger now = observe::ledger(comm, pile.store, scene, pile.stepper.law(), pile.neighborhood);
+    bed.stepper.advance(bed.store, bed.neighborhood, std::llround(0.01 / dt));
+    const observe::Ledger now = observe::ledger(comm, bed.store, scene, bed.stepper.law(), bed.neighborhood);
     worst = std::max(worst, std::abs(now.kinetic_energy + now.potential_energy + now.elastic_energy - given) / given);
   }
   return worst;
@@ -233,25 +233,25 @@ void exact_problems() {
   row("75 lossless spheres in a box (T = 0.5 ms): largest drift of the energy", ledger, 5e-4, parts);
 }
 
-// A loose layer falls, and comes to rest in steps of `factor` times what time_step = "auto" gives. Sound: no guard
+// A loose layer falls, and comes to rest in steps of `factor` times what time_step = "auto" gives. Valid: no guard
 // speaks, and the energy, of which damping takes, never rises by a hundredth of what was given.
-bool is_sound(const input::Input& in, double factor) {
+bool is_valid(const input::Input& in, double factor) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const scene::Scene scene = scene::build(in);
-  run::Pile pile(comm, scene);
-  pile.count = rsa::insert(comm, scene, pile.ownership, {0, 0.0, in.layers.thickness, 0}, pile.store).inserted;
-  pile.first_ids = {0};
-  const double given = observe::energy_of(comm, pile.store, scene, 0, pile.count);
-  pile.neighborhood.rebuild(pile.store);
+  run::Bed bed(comm, scene);
+  bed.count = rsa::insert(comm, scene, bed.ownership, {0, 0.0, in.layers.thickness, 0}, bed.store).inserted;
+  bed.first_ids = {0};
+  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+  bed.neighborhood.rebuild(bed.store);
   const double step = factor * scene.time_step;
-  pile.stepper.use({step, in.particles.youngs_modulus});
+  bed.stepper.use({step, in.particles.youngs_modulus});
   const double fall = std::sqrt(2.0 * in.layers.thickness / in.jamming.gravity);
   constexpr int looks = 20;
   double before = given;
   try {
     for (int k = 0; k < looks; ++k) {
-      pile.stepper.advance(pile.store, pile.neighborhood, std::llround(2.0 * fall / looks / step));
-      const observe::Ledger now = observe::ledger(comm, pile.store, scene, pile.stepper.law(), pile.neighborhood);
+      bed.stepper.advance(bed.store, bed.neighborhood, std::llround(2.0 * fall / looks / step));
+      const observe::Ledger now = observe::ledger(comm, bed.store, scene, bed.stepper.law(), bed.neighborhood);
       const double energy = now.kinetic_energy + now.potential_energy + now.elastic_energy;
       if (!(energy < before + 0.01 * given)) return false;
       before = energy;
@@ -263,16 +263,16 @@ bool is_sound(const input::Input& in, double factor) {
 }
 
 void guard_row(const input::Input& in, const std::string& name) {
-  double sound = 0.0, broken = 0.0;
+  double valid = 0.0, broken = 0.0;
   for (const double factor : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
-    if (!is_sound(in, factor)) {
+    if (!is_valid(in, factor)) {
       broken = factor;
       break;
     }
-    sound = factor;
+    valid = factor;
   }
   const scene::Scene scene = scene::build(in);
-  fmt::print("| {} | {:.2e} | {:.2e} | {:g} | {} |\n", name, scene.time_step, sound * scene.time_step, sound,
+  fmt::print("| {} | {:.2e} | {:.2e} | {:g} | {} |\n", name, scene.time_step, valid * scene.time_step, valid,
              broken > 0.0 ? fmt::format("{:g}", broken) : "none tried");
 }
 
@@ -285,7 +285,7 @@ input::Input falling(double modulus) {
 }
 
 void guard_study() {
-  fmt::print("| scene | \"auto\", s | still sound, s | times \"auto\" | broken at |\n|---|---|---|---|---|\n");
+  fmt::print("| scene | \"auto\", s | still valid, s | times \"auto\" | broken at |\n|---|---|---|---|---|\n");
   for (const double modulus : {1e6, 1e7, 1e8, 1e9, 1e10}) {
     guard_row(falling(modulus), fmt::format("equal, E {:.0e} Pa", modulus));
   }

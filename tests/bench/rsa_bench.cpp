@@ -34,8 +34,8 @@ int main(int argc, char** argv) {
     const double seconds = comm.max(MPI_Wtime() - start);
     best = std::min(best, seconds);
     if (comm.rank() == 0) {
-      std::printf("%lld spheres, %lld darts, %.3f s: %.3g spheres/s, %.3g a rank\n",
-                  static_cast<long long>(got.inserted), static_cast<long long>(got.darts), seconds,
+      std::printf("%lld spheres, %lld trials, %.3f s: %.3g spheres/s, %.3g a rank\n",
+                  static_cast<long long>(got.inserted), static_cast<long long>(got.trials), seconds,
                   static_cast<double>(got.inserted) / seconds,
                   static_cast<double>(got.inserted) / seconds / comm.size());
     }

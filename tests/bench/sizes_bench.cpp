@@ -10,7 +10,7 @@
 
 #include "comm/session.hpp"
 #include "rsa/insert.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi {
@@ -43,35 +43,35 @@ input::Input layer_of(double particles, double ratio) {
   return in;
 }
 
-void measure(const scene::Scene& scene, const comm::Comm& comm, const particles::Store& bed, const char* name) {
-  run::Pile pile(comm, scene);
-  for (LocalIndex i = 0; i < bed.owned(); ++i)
-    pile.store.add_record(bed.ids()[static_cast<std::size_t>(i)], bed.record(i));
-  pile.neighborhood.rebuild(pile.store);
+void measure(const scene::Scene& scene, const comm::Comm& comm, const particles::Store& particles, const char* name) {
+  run::Bed bed(comm, scene);
+  for (LocalIndex i = 0; i < particles.owned(); ++i)
+    bed.store.add_record(particles.ids()[static_cast<std::size_t>(i)], particles.record(i));
+  bed.neighborhood.rebuild(bed.store);
   constexpr int builds = 3, steps = 200;
   double best = HUGE_VAL;
   for (int k = 0; k < builds; ++k) {
     const double start = MPI_Wtime();
-    pile.neighborhood.rebuild(pile.store);
+    bed.neighborhood.rebuild(bed.store);
     best = std::min(best, MPI_Wtime() - start);
   }
-  const auto n = static_cast<double>(bed.owned());
-  const double looked = static_cast<double>(pile.neighborhood.candidates()) / n;
-  const double listed = static_cast<double>(pile.neighborhood.pairs().first.size()) / n;
+  const auto n = static_cast<double>(particles.owned());
+  const double looked = static_cast<double>(bed.neighborhood.candidates()) / n;
+  const double listed = static_cast<double>(bed.neighborhood.pairs().first.size()) / n;
   const double start = MPI_Wtime();
-  pile.stepper.advance(pile.store, pile.neighborhood, steps);
+  bed.stepper.advance(bed.store, bed.neighborhood, steps);
   const double rate = n * steps / (MPI_Wtime() - start);
   fmt::print("| 1:{:g} | {} | {} | {:.1f} | {:.2f} | {:.0f} | {:.2f} | {:.0f} | {} |\n", scene.sizes.ratio(),
-             bed.owned(), name, looked, listed, 1e9 * best / n, 1e-6 * rate, pile.bytes_per_particle(),
-             pile.neighborhood.pairs().window);
+             particles.owned(), name, looked, listed, 1e9 * best / n, 1e-6 * rate, bed.bytes_per_particle(),
+             bed.neighborhood.pairs().window);
 }
 
 void compare(const comm::Comm& comm, double particles, double ratio) {
   const scene::Scene scene = scene::build(layer_of(particles, ratio));
-  run::Pile pile(comm, scene);
-  (void)rsa::insert(comm, scene, pile.ownership, {0, 0.0, scene.in.layers.thickness, 0}, pile.store);
-  pile.neighborhood.rebuild(pile.store);
-  pile.stepper.advance(pile.store, pile.neighborhood, falling_steps);
+  run::Bed bed(comm, scene);
+  (void)rsa::insert(comm, scene, bed.ownership, {0, 0.0, scene.in.layers.thickness, 0}, bed.store);
+  bed.neighborhood.rebuild(bed.store);
+  bed.stepper.advance(bed.store, bed.neighborhood, falling_steps);
   scene::Scene one_size = scene;
   one_size.features.size_levels = 1;
   one_size.skin = 0.1 * scene.sizes.largest();
@@ -79,9 +79,9 @@ void compare(const comm::Comm& comm, double particles, double ratio) {
   same_skin.skin = scene.skin;
   scene::Scene by_size = scene;
   by_size.features.size_levels = std::max(2, static_cast<int>(std::log2(ratio)) + 1);
-  measure(one_size, comm, pile.store, "cells of one size, skin 0.1 r_max");
-  if (ratio > 1.0) measure(same_skin, comm, pile.store, "cells of one size, skin 0.2 r_mean");
-  if (ratio > 1.0) measure(by_size, comm, pile.store, "by size class");
+  measure(one_size, comm, bed.store, "cells of one size, skin 0.1 r_max");
+  if (ratio > 1.0) measure(same_skin, comm, bed.store, "cells of one size, skin 0.2 r_mean");
+  if (ratio > 1.0) measure(by_size, comm, bed.store, "by size class");
 }
 
 }  // namespace

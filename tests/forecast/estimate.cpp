@@ -187,7 +187,7 @@ TEST_F(Estimates, OneSideIsFound) {
 
 TEST_F(Estimates, StepsOfTheMovingParticlesAreThoseOfTheLoop) {
   for (const int window : {0, 2, 50}) {
-    const scene::Scene s = scene({"dynamics.window=" + std::to_string(window), "dynamics.thaw=0.2",
+    const scene::Scene s = scene({"dynamics.window=" + std::to_string(window), "dynamics.relaxation=0.2",
                                   "dynamics.time_step=1e-4", "layers.time_step=2e-4"});
     std::int64_t steps = 0;
     for (std::int64_t layer = 1; layer <= 7; ++layer)
@@ -201,7 +201,7 @@ TEST_F(Estimates, TheFractionIsThatOfKnownPacks) {
   const Set paper{"container.size=[1,1,0.5]", "container.boundary=[\"wall\",\"wall\"]"};
   Set without = paper;
   without.emplace_back("dynamics.rotation=false");
-  // doc/reproduction.md, example 5.3: particles, height and so the pile's fraction.
+  // doc/reproduction.md, example 5.3: particles, height and so the bed's fraction.
   const double volume = 4.0 / 3.0 * 3.141592653589793 * 8e-6;
   EXPECT_NEAR(fraction(paper), 9711 * volume / 0.5400, 0.004);
   EXPECT_NEAR(fraction(without), 8964 * volume / 0.5186, 0.004);

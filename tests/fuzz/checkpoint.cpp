@@ -1,5 +1,5 @@
 /// The readers of checkpoints and packs with damaged files: refused with an error, or read as they were written. The
-/// bytes are a list of changes to a sound file, which is made when the fuzzer starts: see Damage. Or the change is to
+/// bytes are a list of changes to a valid file, which is made when the fuzzer starts: see Damage. Or the change is to
 /// what a checkpoint says and all its digests are made to agree, as no damage would: see Forgery.
 #include "pack/checkpoint.hpp"
 
@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
+#include "disk/seal.hpp"
 #include "fuzz/demand.hpp"
 #include "pack/pack.hpp"
 #include "pack/run_state.hpp"
-#include "disk/seal.hpp"
 
 namespace packmpi::fuzz {
 namespace {
@@ -46,7 +46,7 @@ report::LayerRow some_layer() {
   return {.inserted = particle_count,
           .total = particle_count,
           .attempts = 20,
-          .fraction_got = 0.1,
+          .achieved_fraction = 0.1,
           .steps = 7,
           .stop_reason = "duration"};
 }
@@ -81,7 +81,7 @@ std::string bytes_of(const pack::PackRows& rows) {
   return bytes;
 }
 
-/// A sound file, and what its reader must find in it or in a damaged one.
+/// A valid file, and what its reader must find in it or in a damaged one.
 struct Sample {
   bool pack = false;
   int dimension = 3;
@@ -188,7 +188,7 @@ class World {
       demand(read_contents(alone_, sample, path_) == contents, "other contents are accepted");
     } catch (const Error& error) {
       const std::string words = error.what();
-      demand(bytes != sample.bytes, "a sound file is refused: " + words);
+      demand(bytes != sample.bytes, "a valid file is refused: " + words);
       demand(error.code() == (sample.pack ? ExitCode::io_failure : ExitCode::bad_checkpoint), "wrong code: " + words);
       demand(words.find(path_) != std::string::npos, "no path: " + words);
     }

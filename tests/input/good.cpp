@@ -85,7 +85,7 @@ settled_energy = 1e-3
 settled_drift = 2e-3
 settled_hold = "0.1 s"
 window = 3
-thaw = "0.6 s"
+relaxation = "0.6 s"
 [parallel]
 decomposition = "metis"
 [ensemble]
@@ -150,7 +150,7 @@ TEST(GoodInput, EveryForceAndProgramKeyArrives) {
   EXPECT_EQ(in.dynamics.settled_drift, 2e-3);
   EXPECT_EQ(in.dynamics.settled_hold, 0.1);
   EXPECT_EQ(in.dynamics.window, 3);
-  EXPECT_EQ(in.dynamics.thaw, 0.6);
+  EXPECT_EQ(in.dynamics.relaxation, 0.6);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);
   EXPECT_TRUE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.0);
@@ -208,7 +208,7 @@ TEST(Fidelity, PresetsAreKeysOfTheEffectiveInput) {
         const Input in = with(set);
         EXPECT_LT(in.layers.duration, 1.0) << name;
         EXPECT_LT(in.layers.velocity[in.container.size.size() - 1], 0.0) << name;
-        EXPECT_GT(in.dynamics.thaw, 0.0) << name;
+        EXPECT_GT(in.dynamics.relaxation, 0.0) << name;
         EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << name;
         for (const PresetValue& entry : preset(in)) {
           std::string line(entry.path.substr(entry.path.rfind('.') + 1));
@@ -226,7 +226,7 @@ TEST(Fidelity, GivenKeysWin) {
   EXPECT_EQ(in.layers.duration, 0.77);
   EXPECT_EQ(in.dynamics.window, 9);
   EXPECT_EQ(in.layers.youngs_modulus, 5e7);
-  EXPECT_EQ(in.dynamics.thaw, with({"fidelity=balanced"}).dynamics.thaw) << "the others stay";
+  EXPECT_EQ(in.dynamics.relaxation, with({"fidelity=balanced"}).dynamics.relaxation) << "the others stay";
   const std::vector<std::string> lines = preset_in_use(in);
   EXPECT_TRUE(std::ranges::any_of(
       lines, [](const std::string& line) { return line.starts_with("layers.duration = 0.77 (the preset: 0."); }));
@@ -243,15 +243,15 @@ TEST(Fidelity, TimesGoWithTheFreeFallThroughALayer) {
   const Input thick = with({"fidelity=draft", "layers.thickness=0.4"});
   EXPECT_NEAR(heavy.layers.duration, 0.5 * in.layers.duration, 0.01 * in.layers.duration);
   EXPECT_NEAR(thick.layers.duration, 2.0 * in.layers.duration, 0.01 * in.layers.duration);
-  EXPECT_NEAR(*heavy.dynamics.thaw, 0.5 * *in.dynamics.thaw, 0.01 * *in.dynamics.thaw);
-  EXPECT_LT(*thick.dynamics.thaw, 2.0 * *in.dynamics.thaw) << "the pile is less deep in layers";
+  EXPECT_NEAR(*heavy.dynamics.relaxation, 0.5 * *in.dynamics.relaxation, 0.01 * *in.dynamics.relaxation);
+  EXPECT_LT(*thick.dynamics.relaxation, 2.0 * *in.dynamics.relaxation) << "the bed is less deep in layers";
   EXPECT_NEAR(heavy.layers.velocity[2], 2.0 * in.layers.velocity[2], 0.01 * -in.layers.velocity[2]);
 }
 
 constexpr const char* few_sizes =
     "particles.radius={ distribution = \"uniform\", min = 0.015, max = 0.025, weighting = \"number\" }";
 
-/// What a pile of a scene creeps by, over that of "paper": layers and thaw as "balanced" has them.
+/// What a bed of a scene creeps by, over that of "paper": layers and relaxation as "balanced" has them.
 double creep_over_paper(const Input& in) {
   const RadiusRange radii = radius_range(in.particles.radius);
   const double t2 = 2.0 * in.layers.thickness / in.jamming.gravity, n = 0.6 / 0.25 * 0.5 / in.layers.thickness;
@@ -260,7 +260,7 @@ double creep_over_paper(const Input& in) {
   for (int layer = 0; layer < static_cast<int>(n + 0.5); ++layer) moves += std::min(window, n - layer) / n;
   const double hard = in.particles.youngs_modulus;
   const double layers = moves * in.layers.duration * automatic_step(in, radii, in.layers.youngs_modulus.value_or(hard));
-  return (layers + *in.dynamics.thaw * automatic_step(in, radii, hard)) / (0.5 * (n + 1.0) * 1e-3 * t2);
+  return (layers + *in.dynamics.relaxation * automatic_step(in, radii, hard)) / (0.5 * (n + 1.0) * 1e-3 * t2);
 }
 
 TEST(Fidelity, PilesCreepAsMuchAsTheyAreToWhateverTheirParticles) {
@@ -280,14 +280,14 @@ TEST(Fidelity, PilesCreepAsMuchAsTheyAreToWhateverTheirParticles) {
   EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", few_sizes})), graded, 0.01 * graded);
 }
 
-TEST(Fidelity, TheThawIsALittleShorterWhereTheShortestLayersWouldLetAPileCreepByTooMuch) {
-  const auto thaw = [](const char* modulus) {
+TEST(Fidelity, TheRelaxationIsALittleShorterWhereTheShortestLayersWouldLetAPileCreepByTooMuch) {
+  const auto relaxation = [](const char* modulus) {
     const Input in = with({"fidelity=balanced", "dynamics.rotation=false", "contact.friction=0.4", modulus});
-    return *in.dynamics.thaw;
+    return *in.dynamics.relaxation;
   };
   const double usual = (2.0 + 0.18 * 5.0) * std::sqrt(2.0 * 0.1 / 2.0);
-  EXPECT_NEAR(thaw("particles.youngs_modulus=1e8"), usual, 0.005 * usual);
-  EXPECT_NEAR(thaw("particles.youngs_modulus=2e6"), 0.95 * usual, 0.005 * usual) << "steps 4.8 times as long";
+  EXPECT_NEAR(relaxation("particles.youngs_modulus=1e8"), usual, 0.005 * usual);
+  EXPECT_NEAR(relaxation("particles.youngs_modulus=2e6"), 0.95 * usual, 0.005 * usual) << "steps 4.8 times as long";
 }
 
 TEST(Fidelity, LayersAreAsSoftAsThePileBearsAndNoSofterThanItPays) {
@@ -302,14 +302,14 @@ TEST(Fidelity, LayersAreAsSoftAsThePileBearsAndNoSofterThanItPays) {
   EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=1e7"), 1e7) << "large steps as it is";
   EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=2e6"), 2e6);
   const Input high = with({"fidelity=balanced", "container.size=[1.0, 1.0, 5.0]"});
-  EXPECT_EQ(high.layers.youngs_modulus, 2e3 * 1e4) << "the stress of the pile";
+  EXPECT_EQ(high.layers.youngs_modulus, 2e3 * 1e4) << "the stress of the bed";
 }
 
 TEST(Fidelity, AWindowIsSoManyParticlesDeep) {
   const auto window = [](const char* name, const char* radius) {
     return with({name, std::string("particles.radius.value=") + radius}).dynamics.window;
   };
-  EXPECT_EQ(window("fidelity=balanced", "0.02"), 6);  // a layer lifts the pile by 0.0417 m
+  EXPECT_EQ(window("fidelity=balanced", "0.02"), 6);  // a layer lifts the bed by 0.0417 m
   EXPECT_EQ(window("fidelity=balanced", "0.002"), 5) << "at least";
   EXPECT_EQ(window("fidelity=draft", "0.02"), 4);
   EXPECT_EQ(window("fidelity=draft", "0.002"), 3) << "at least";

@@ -51,7 +51,7 @@ double distance(const geometry::Box& box, const Vec3& a, const Vec3& b) {
   return std::sqrt(squared);
 }
 
-// A pile in this test: balls dealt out to whatever rank, brought home by the first rebuild.
+// A bed in this test: balls dealt out to whatever rank, brought home by the first rebuild.
 struct World {
   World(const comm::Comm& comm, const input::Input& in, std::size_t count)
       : scene(scene::build(in)),
@@ -166,7 +166,7 @@ TEST(Neighborhood, FrozenParticlesAreWallsToTheMovingOnes) {
       const double near = in.near_field->cutoff + skin;
       EXPECT_EQ(listed(w.store, w.hood.near_pairs()), expected(w, [near](const Ball&, const Ball&) { return near; }));
     }
-    w.hood.thaw(w.store);
+    w.hood.release(w.store);
     w.hood.rebuild(w.store);
     EXPECT_EQ(listed(w.store, w.hood.pairs()), expected(w, cut));
     for (LocalIndex i = 0; i < w.store.owned(); ++i) {

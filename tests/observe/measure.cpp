@@ -263,7 +263,7 @@ TEST_F(Observe, SizesByHand) {
   EXPECT_EQ(sizes(comm_, store({}, scene, Spread::all)).max, 0.0);
 }
 
-TEST_F(Observe, SoundnessFindsTheLostAndTheBroken) {
+TEST_F(Observe, ValidityFindsTheLostAndTheBroken) {
   const auto scene = testing::make_scene(3, {1.0, 1.0, 1.0}, {false, true}, 0.1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
@@ -275,7 +275,7 @@ TEST_F(Observe, SoundnessFindsTheLostAndTheBroken) {
                                   {{0.5, 0.5, 0.5}, 0.1, {}, {inf, 0, 0}},
                                   {{nan, 0.5, 0.5}, 0.1}};
   for (const Spread spread : every_spread) {
-    const Soundness got = soundness(comm_, store(grains, scene, spread), scene);
+    const Validity got = validity(comm_, store(grains, scene, spread), scene);
     EXPECT_EQ(got.found, 7);
     EXPECT_EQ(got.outside, 3);
     EXPECT_EQ(got.non_finite, 3);

@@ -62,7 +62,7 @@ class Sizes : public ::testing::Test {
 
 TEST_F(Sizes, ClassesAreExact) {
   const SizeMatches m = of(of_classes({{1e-3, 50}, {2e-3, 30}, {4e-3, 20}}), classes({1e-3, 2e-3, 4e-3}, {5, 3, 2}));
-  for (const SizePoints& p : {m.by_number.asked, m.by_number.got}) {
+  for (const SizePoints& p : {m.by_number.target, m.by_number.achieved}) {
     EXPECT_EQ(p.d10, 2e-3);
     EXPECT_EQ(p.d30, 2e-3);
     EXPECT_EQ(p.d50, 2e-3) << "half are of the first class: not exceeded";
@@ -72,7 +72,7 @@ TEST_F(Sizes, ClassesAreExact) {
     EXPECT_EQ(p.curvature(), 0.5);
   }
   // Masses 50, 240, 1280 of 1570: a tenth of it is reached in the second class, all else in the third.
-  for (const SizePoints& p : {m.by_mass.asked, m.by_mass.got}) {
+  for (const SizePoints& p : {m.by_mass.target, m.by_mass.achieved}) {
     EXPECT_EQ(p.d10, 4e-3);
     EXPECT_EQ(p.d30, 8e-3);
     EXPECT_EQ(p.d90, 8e-3);
@@ -84,7 +84,7 @@ TEST_F(Sizes, ClassesAreExact) {
 TEST_F(Sizes, TheDistanceOfClassesIsThatOfTheirShares) {
   const SizeMatches m = of(of_classes({{1e-3, 60}, {2e-3, 20}, {4e-3, 20}}), classes({1e-3, 2e-3, 4e-3}, {5, 3, 2}));
   EXPECT_NEAR(m.by_number.distance, 0.1, 1e-12);
-  EXPECT_EQ(m.by_number.got.d50, 2e-3);
+  EXPECT_EQ(m.by_number.achieved.d50, 2e-3);
   const double asked = (50.0 + 240.0) / 1570.0;  // of the mass up to the second class
   const double got = (60.0 + 160.0) / 1500.0;
   EXPECT_NEAR(m.by_mass.distance, asked - got, 1e-12);
@@ -95,16 +95,16 @@ TEST_F(Sizes, AUniformSample) {
   constexpr int count = 1000;
   const std::vector<double> radii = evenly(a, b, count);
   const SizeMatches m = of(radii, uniform(a, b));
-  EXPECT_EQ(m.by_number.got.d10, 2.0 * radii[99]) << "the hundredth smallest";
-  EXPECT_EQ(m.by_number.got.d60, 2.0 * radii[599]);
-  EXPECT_EQ(m.by_number.got.d90, 2.0 * radii[899]);
-  EXPECT_NEAR(m.by_number.asked.d30, 2.0 * 0.013, 1e-15);
+  EXPECT_EQ(m.by_number.achieved.d10, 2.0 * radii[99]) << "the hundredth smallest";
+  EXPECT_EQ(m.by_number.achieved.d60, 2.0 * radii[599]);
+  EXPECT_EQ(m.by_number.achieved.d90, 2.0 * radii[899]);
+  EXPECT_NEAR(m.by_number.target.d30, 2.0 * 0.013, 1e-15);
   EXPECT_LE(m.by_number.distance, 0.5 / count + 1e-12);
   EXPECT_GE(m.by_number.distance, 0.5 / count - resolution);
   // By mass, a share s is below r with r^4 = a^4 + s (b^4 - a^4).
   const double half = 2.0 * std::pow(0.5 * (std::pow(a, 4) + std::pow(b, 4)), 0.25);
-  EXPECT_NEAR(m.by_mass.asked.d50, half, 1e-14);
-  EXPECT_NEAR(m.by_mass.got.d50, half, 2.0 * (b - a) / count);
+  EXPECT_NEAR(m.by_mass.target.d50, half, 1e-14);
+  EXPECT_NEAR(m.by_mass.achieved.d50, half, 2.0 * (b - a) / count);
 }
 
 TEST_F(Sizes, HalfADistributionIsHalfAway) {
@@ -125,14 +125,14 @@ TEST_F(Sizes, EqualRadiiAndNone) {
   input::Radius equal;
   equal.value = 0.02;
   const SizeMatches m = of(std::vector<double>(17, 0.02), equal);
-  EXPECT_EQ(m.by_mass.got.d10, 0.04);
-  EXPECT_EQ(m.by_number.got.d90, 0.04);
-  EXPECT_EQ(m.by_number.got.uniformity(), 1.0);
+  EXPECT_EQ(m.by_mass.achieved.d10, 0.04);
+  EXPECT_EQ(m.by_number.achieved.d90, 0.04);
+  EXPECT_EQ(m.by_number.achieved.uniformity(), 1.0);
   EXPECT_EQ(m.by_number.distance, 0.0);
   EXPECT_EQ(m.by_mass.distance, 0.0);
   const SizeMatches none = of({}, equal);
-  EXPECT_EQ(none.by_number.got.d50, 0.0);
-  EXPECT_EQ(none.by_number.asked.d50, 0.04);
+  EXPECT_EQ(none.by_number.achieved.d50, 0.0);
+  EXPECT_EQ(none.by_number.target.d50, 0.04);
 }
 
 TEST_F(Sizes, SameBitsOnAnyNumberOfRanks) {
@@ -152,11 +152,11 @@ TEST_F(Sizes, SameBitsOnAnyNumberOfRanks) {
   const SizeMatches alone = match(comm::Comm(MPI_COMM_SELF), radii, asked);
   for (const auto& [x, y] : {std::pair{here.by_number, alone.by_number}, std::pair{here.by_mass, alone.by_mass}}) {
     EXPECT_EQ(x.distance, y.distance);
-    EXPECT_EQ(x.got.d10, y.got.d10);
-    EXPECT_EQ(x.got.d30, y.got.d30);
-    EXPECT_EQ(x.got.d50, y.got.d50);
-    EXPECT_EQ(x.got.d60, y.got.d60);
-    EXPECT_EQ(x.got.d90, y.got.d90);
+    EXPECT_EQ(x.achieved.d10, y.achieved.d10);
+    EXPECT_EQ(x.achieved.d30, y.achieved.d30);
+    EXPECT_EQ(x.achieved.d50, y.achieved.d50);
+    EXPECT_EQ(x.achieved.d60, y.achieved.d60);
+    EXPECT_EQ(x.achieved.d90, y.achieved.d90);
   }
   EXPECT_LT(here.by_number.distance, 0.01) << "an even sample of it";
   EXPECT_GT(here.by_number.distance, 0.0);

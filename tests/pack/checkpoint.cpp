@@ -1,5 +1,5 @@
 /// A checkpoint gives back every bit on any number of ranks, is the same file from any number of them, and nothing
-/// damaged is ever taken for a sound one.
+/// damaged is ever taken for a valid one.
 #include "pack/checkpoint.hpp"
 
 #include <gtest/gtest.h>
@@ -40,15 +40,15 @@ RunState some_state(int dimension, bool rotation, std::size_t count) {
   state.steps = (std::int64_t{1} << 53) + 1;  // no double
   state.particle_steps = INT64_MAX;
   state.layers = testing::some_record(dimension, 2).layers;
-  state.creep = -0.0;
+  state.compaction_rate = -0.0;
   state.phase = Phase::settling;
   state.moving_from = 5;
   state.height = 0.3;
-  state.thaws = 1;
-  state.thaw_steps = 2;
-  state.height_before_thaw = 0.7;
+  state.relaxations = 1;
+  state.relaxation_steps = 2;
+  state.height_before_relaxation = 0.7;
   state.row = state.layers[1];
-  state.row.fraction_got = 0.1 + 0.2;
+  state.row.achieved_fraction = 0.1 + 0.2;
   state.row.height = 4.9e-324;
   state.done = 17;
   state.phi_before = 1.0 / 3.0;
@@ -68,16 +68,16 @@ std::vector<std::uint64_t> numbers_of(const RunState& state) {
     all.push_back(bits);
   };
   for (const auto value : {state.serial, state.count, state.steps, state.particle_steps, state.done, state.moving_from,
-                           state.thaws, state.thaw_steps, state.calm_since})
+                           state.relaxations, state.relaxation_steps, state.calm_since})
     add(value);
-  for (const double value :
-       {state.creep, state.phi_before, state.height, state.height_before_thaw, state.mean_height, state.phi_calm})
+  for (const double value : {state.compaction_rate, state.phi_before, state.height, state.height_before_relaxation,
+                             state.mean_height, state.phi_calm})
     add(value);
   std::vector<LayerRow> rows = state.layers;
   rows.push_back(state.row);
   for (const LayerRow& row : rows) {
     for (const auto value : {row.inserted, row.total, row.attempts, row.steps}) add(value);
-    for (const double value : {row.fraction_asked, row.fraction_got, row.region_bottom, row.height, row.top,
+    for (const double value : {row.target_fraction, row.achieved_fraction, row.region_bottom, row.height, row.top,
                                row.duration, row.kinetic_per_mgd, row.max_overlap, row.coordination}) {
       add(value);
     }

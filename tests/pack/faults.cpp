@@ -1,5 +1,5 @@
 /// Every call of the system that writes or reads a checkpoint or a pack fails once, one after the other, on all ranks
-/// and on one alone: nothing sound is lost, nothing wrong is taken, every rank hears of it, nobody waits for ever.
+/// and on one alone: nothing valid is lost, nothing wrong is taken, every rank hears of it, nobody waits for ever.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -107,17 +107,17 @@ class Faults : public ::testing::Test {
       versions.at(static_cast<std::size_t>(version)) = bytes_of(path_);
       comm_.barrier();
     }
-    int sound = 0;
+    int valid = 0;
     try_all(
-        what, write_faults, [&] { write(1 - sound, path_); },
+        what, write_faults, [&] { write(1 - valid, path_); },
         [&](ExitCode code) {
           EXPECT_TRUE(code == ExitCode::done || code == ExitCode::io_failure);
           EXPECT_EQ(files(), std::vector<std::string>{"a.hdf"});
           const std::string there = bytes_of(path_);
-          const bool is_new = there == versions.at(static_cast<std::size_t>(1 - sound));
-          const bool is_old = there == versions.at(static_cast<std::size_t>(sound));
+          const bool is_new = there == versions.at(static_cast<std::size_t>(1 - valid));
+          const bool is_old = there == versions.at(static_cast<std::size_t>(valid));
           EXPECT_TRUE(is_new || (is_old && code != ExitCode::done)) << is_old;
-          if (is_new) sound = 1 - sound;
+          if (is_new) valid = 1 - valid;
         });
   }
 

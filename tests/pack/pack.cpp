@@ -251,7 +251,7 @@ TEST_F(Pack, ReaderRefusesWhatIsNoPack) {
 // By the reader of the whole, and by all ranks together. The last byte stands for every way to cut the seal off.
 TEST_F(Pack, AFlippedBitAnywhereIsRefused) {
   const auto layout = particles::layout_of(3, true);
-  const std::string path = write("sound.hdf", layout, testing::some_grains(137, 3), Spread::all, true);
+  const std::string path = write("valid.hdf", layout, testing::some_grains(137, 3), Spread::all, true);
   const std::string damaged_path = folder_.file("damaged.hdf");
   std::ifstream file(path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(file), {}};

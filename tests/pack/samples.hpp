@@ -93,8 +93,8 @@ inline report::RunRecord some_record(int dimension, std::size_t layers) {
   r.seed = 18446744073709551615u;
   r.dimension = dimension;
   r.size = {1.0, 2.0, dimension == 3 ? 0.5 : 0.0};
-  r.height_asked = 0.5;
-  r.fraction_asked = 0.25;
+  r.target_height = 0.5;
+  r.target_fraction = 0.25;
   r.particles = 1234567890123;
   r.height = 0.512345678901234;
   r.phi = 0.1 + 0.2;
@@ -107,7 +107,7 @@ inline report::RunRecord some_record(int dimension, std::size_t layers) {
     row.inserted = 1000000000 + static_cast<std::int64_t>(k);
     row.total = row.inserted * static_cast<std::int64_t>(k + 1);
     row.steps = 10000;
-    row.fraction_got = 0.2501234;
+    row.achieved_fraction = 0.2501234;
     row.height = 0.1 * static_cast<double>(k + 1);
     row.kinetic_per_mgd = 1.2345e-12;
     row.max_overlap = 1.0e-3;

@@ -34,12 +34,12 @@ class Report : public ::testing::Test {
 TEST_F(Report, JsonGivesEveryNumberBack) {
   const RunRecord record = testing::some_record(3, 4);
   const auto json = nlohmann::json::parse(to_json(record));
-  EXPECT_EQ(json["asked"]["height_asked"].get<double>(), record.height_asked);
-  EXPECT_EQ(json["asked"]["size"].get<std::vector<double>>(), (std::vector<double>{1.0, 2.0, 0.5}));
-  EXPECT_EQ(json["got"]["phi"].get<double>(), 0.1 + 0.2);
-  EXPECT_EQ(json["got"]["height"].get<double>(), 0.512345678901234);
-  EXPECT_EQ(json["got"]["particles"].get<std::int64_t>(), 1234567890123);
-  EXPECT_EQ(json["got"]["reached"].get<bool>(), true);
+  EXPECT_EQ(json["target"]["target_height"].get<double>(), record.target_height);
+  EXPECT_EQ(json["target"]["size"].get<std::vector<double>>(), (std::vector<double>{1.0, 2.0, 0.5}));
+  EXPECT_EQ(json["achieved"]["phi"].get<double>(), 0.1 + 0.2);
+  EXPECT_EQ(json["achieved"]["height"].get<double>(), 0.512345678901234);
+  EXPECT_EQ(json["achieved"]["particles"].get<std::int64_t>(), 1234567890123);
+  EXPECT_EQ(json["achieved"]["reached"].get<bool>(), true);
   EXPECT_EQ(json["audit"]["lost"].get<std::int64_t>(), 0);
   EXPECT_EQ(json["provenance"]["seed"].get<std::uint64_t>(), record.seed);
   EXPECT_EQ(json["provenance"]["effective_input"].get<std::string>(), record.effective_input);
@@ -56,9 +56,9 @@ TEST_F(Report, JsonOfABrokenRunStillParses) {
   record.layers[0].height = std::numeric_limits<double>::infinity();
   record.name = "not UTF-8: \xff";
   const auto json = nlohmann::json::parse(to_json(record));
-  EXPECT_TRUE(json["got"]["phi"].is_null());
+  EXPECT_TRUE(json["achieved"]["phi"].is_null());
   EXPECT_TRUE(json["layers"][0]["height"].is_null());
-  EXPECT_EQ(json["asked"]["size"].size(), 2u);
+  EXPECT_EQ(json["target"]["size"].size(), 2u);
 }
 
 TEST_F(Report, TableFitsAScreenAndIsAligned) {
@@ -66,7 +66,7 @@ TEST_F(Report, TableFitsAScreenAndIsAligned) {
   record.name = std::string(300, 'n');
   record.stop_reason = std::string(300, 's');
   record.layers[3].stop_reason = std::string(300, 's');
-  record.creep = -std::numeric_limits<double>::denorm_min();
+  record.compaction_rate = -std::numeric_limits<double>::denorm_min();
   record.steps = record.particle_steps = std::numeric_limits<std::int64_t>::max();
   record.layers[5].kinetic_per_mgd = 1.23456e-300;
   record.layers[5].height = -1.23456e-300;
@@ -76,7 +76,7 @@ TEST_F(Report, TableFitsAScreenAndIsAligned) {
   std::size_t quantity_end = 0;
   while (std::getline(lines, line)) {
     EXPECT_LE(line.size(), 100u) << line;
-    if (line.find("asked") != std::string::npos && quantity_end == 0) quantity_end = line.size();
+    if (line.find("target") != std::string::npos && quantity_end == 0) quantity_end = line.size();
     if (count >= 1 && count <= 24) {
       EXPECT_EQ(line.size(), quantity_end) << line;
     }

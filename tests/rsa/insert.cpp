@@ -49,7 +49,7 @@ void expect_same_spheres(const particles::Store& store, const Ownership& ownersh
 void expect_serial_result(const scene::Scene& scene, const rsa::LayerRegion& region) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const oracle::Rsa serial = oracle::insert(scene, region, static_cast<std::uint32_t>(scene.in.layers.attempts));
-  ASSERT_EQ(static_cast<std::int64_t>(serial.placed.size()), serial.asked) << "the case asks for too much";
+  ASSERT_EQ(static_cast<std::int64_t>(serial.placed.size()), serial.target) << "the case asks for too much";
   int tried = 0;
   for (const Decomposition kind : kinds) {
     const auto ownership = try_ownership(comm, test::rsa_grid(scene), kind);
@@ -57,10 +57,10 @@ void expect_serial_result(const scene::Scene& scene, const rsa::LayerRegion& reg
     ++tried;
     particles::Store store(scene.features.layout());
     const rsa::Insertion got = rsa::insert(comm, scene, *ownership, region, store);
-    EXPECT_EQ(got.asked, serial.asked);
-    EXPECT_EQ(got.inserted, serial.asked);
-    EXPECT_EQ(got.darts, serial.darts);
-    EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), serial.asked);
+    EXPECT_EQ(got.target, serial.target);
+    EXPECT_EQ(got.inserted, serial.target);
+    EXPECT_EQ(got.trials, serial.trials);
+    EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), serial.target);
     expect_same_spheres(store, *ownership, comm.rank(), serial, region.first_id);
   }
   EXPECT_GE(tried, 2);
@@ -105,7 +105,7 @@ TEST(Insert, WidelyGradedSpheres) {
                        {0, 0.0, 0.25, 0});
 }
 
-// 5.4 of the paper: in the order of the indices its largest spheres find no room in a million darts.
+// 5.4 of the paper: in the order of the indices its largest spheres find no room in a million trials.
 TEST(Insert, LayerOfThePaper) {
   expect_serial_result(rsa_scene(3, {1.0, 1.0, 0.5}, walls, gaussian_radius(0.02, 0.002, 0.014, 0.026), 0.25, 10000),
                        {0, 0.0, 0.1, 0});
@@ -176,7 +176,7 @@ TEST(Insert, LeftBetweenVolleysAndBegunAnew) {
   }
   const rsa::Insertion again = rsa::insert(comm, scene, ownership, region, store);
   EXPECT_EQ(again.inserted, once.inserted);
-  EXPECT_EQ(again.darts, once.darts);
+  EXPECT_EQ(again.trials, once.trials);
   ASSERT_EQ(store.owned(), kept + whole.owned());
   for (LocalIndex i = 0; i < whole.owned(); ++i) {
     EXPECT_EQ(store.position(kept + i), whole.position(i));
@@ -205,14 +205,14 @@ TEST(GiveUp, AfterTheAttemptsAllowed) {
   const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, periodic, equal_radius(0.04), 0.3, 12);
   const rsa::LayerRegion region{2, 0.0, 0.4, 0};
   const oracle::Rsa serial = oracle::insert(scene, region, 12);
-  ASSERT_LT(static_cast<std::int64_t>(serial.placed.size()), serial.asked);
+  ASSERT_LT(static_cast<std::int64_t>(serial.placed.size()), serial.target);
   const double volume = static_cast<double>(serial.placed.size()) * 4.0 / 3.0 * 3.14159265358979 * 0.04 * 0.04 * 0.04;
   for (const Decomposition kind : {Decomposition::slab, Decomposition::metis}) {
     EXPECT_THAT(complaint(scene, region, kind),
                 testing::StartsWith(fmt::format(
                     "layer 2: random sequential addition placed {} of {} particles: solid fraction "
-                    "{:.4f} of the 0.3000 asked, after {} darts; it ended in 12 of 12 attempts a particle. Lower",
-                    serial.placed.size(), serial.asked, volume / (0.8 * 0.4), serial.darts)));
+                    "{:.4f} of the 0.3000 asked, after {} trials; it ended in 12 of 12 attempts a particle. Lower",
+                    serial.placed.size(), serial.target, volume / (0.8 * 0.4), serial.trials)));
   }
 }
 
@@ -225,9 +225,9 @@ TEST(GiveUp, EarlyWhenTheRestCannotFit) {
   const int attempts = std::stoi(words.substr(at + 9));
   EXPECT_LT(attempts, 1000);
   const oracle::Rsa serial = oracle::insert(scene, region, static_cast<std::uint32_t>(attempts));
-  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.asked)));
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.target)));
   EXPECT_THAT(words, testing::HasSubstr(
-                         fmt::format("after {} darts; it ended in {} of 2000 attempts", serial.darts, attempts)));
+                         fmt::format("after {} trials; it ended in {} of 2000 attempts", serial.trials, attempts)));
 }
 
 TEST(GiveUp, NamesTheSizeClass) {
@@ -235,8 +235,8 @@ TEST(GiveUp, NamesTheSizeClass) {
   const rsa::LayerRegion region{0, 0.0, 0.4, 0};
   const oracle::Rsa serial = oracle::insert(scene, region, 50);
   const std::string words = complaint(scene, region, Decomposition::slab);
-  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.asked)));
-  EXPECT_THAT(words, testing::HasSubstr(fmt::format("after {} darts; it ended in 50 of 50 attempts", serial.darts)));
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("placed {} of {} particles", serial.placed.size(), serial.target)));
+  EXPECT_THAT(words, testing::HasSubstr(fmt::format("after {} trials; it ended in 50 of 50 attempts", serial.trials)));
   EXPECT_THAT(words, testing::ContainsRegex("at size class [2-8] of 8, from the largest down"));
 }
 

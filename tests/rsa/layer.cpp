@@ -43,8 +43,8 @@ TEST(Overlap, IsThatOfTheNearestImages) {
   EXPECT_TRUE(rsa::overlap(box, {0.25, 0.25, 0.5}, 0.125, {0.5, 0.25, 0.5}, 0.125 * (1.0 + 1e-15)));
   const scene::Scene scene = rsa_scene(3, {1.0, 0.7, 2.0}, {true, false}, equal_radius(0.1), 0.1, 1);
   for (std::uint64_t k = 0; k < 2000; ++k) {
-    const Vec3 a = rsa::dart(scene, {0, 0.0, 0.5, 0}, k, 0.0, 0);
-    const Vec3 b = rsa::dart(scene, {0, 0.0, 0.5, 0}, k, 0.0, 1);
+    const Vec3 a = rsa::trial(scene, {0, 0.0, 0.5, 0}, k, 0.0, 0);
+    const Vec3 b = rsa::trial(scene, {0, 0.0, 0.5, 0}, k, 0.0, 1);
     bool any = false;
     for (const double shift : {-1.0, 0.0, 1.0}) any |= std::hypot(a[0] - b[0] + shift, a[1] - b[1], a[2] - b[2]) < 0.3;
     EXPECT_EQ(rsa::overlap(box, a, 0.1, b, 0.2), any);
@@ -52,13 +52,13 @@ TEST(Overlap, IsThatOfTheNearestImages) {
   }
 }
 
-TEST(Dart, WholeSphereInsideAndUniform) {
+TEST(Trial, WholeSphereInsideAndUniform) {
   const scene::Scene scene = rsa_scene(3, {1.0, 0.7, 2.0}, {true, false}, equal_radius(0.1), 0.1, 1);
   const rsa::LayerRegion region{1, 0.4, 0.5, 0};
   constexpr int n = 20000;
   Vec3 mean{};
   for (std::uint64_t k = 0; k < n; ++k) {
-    const Vec3 x = rsa::dart(scene, region, k, 0.1, 3);
+    const Vec3 x = rsa::trial(scene, region, k, 0.1, 3);
     EXPECT_TRUE(x[0] >= 0.0 && x[0] < 1.0);
     EXPECT_TRUE(x[1] >= 0.1 && x[1] <= 0.6 + 1e-15);
     EXPECT_TRUE(x[2] >= 0.5 && x[2] <= 0.8 + 1e-15);

@@ -11,8 +11,8 @@
 
 #include "input/read.hpp"
 #include "run/analyze.hpp"
+#include "run/bed.hpp"
 #include "run/make_pack.hpp"
-#include "run/pile.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -73,14 +73,14 @@ class Analysis : public ::testing::Test {
     scene::Scene scene = scene::build(in);
     scene.in.near_field = input::NearField{.alpha1 = 0, .beta1 = 0, .alpha2 = 0, .beta2 = 0, .cutoff = range};
     scene.reach = range;
-    Pile pile(comm_, scene);
+    Bed bed(comm_, scene);
     GlobalId id = 0;
     for (const Vec3& x : lattice.points) {  // by turns, wherever it belongs
-      if (id % comm_.size() == comm_.rank()) pile.store.add(id, x, r, {}, {});
+      if (id % comm_.size() == comm_.rank()) bed.store.add(id, x, r, {}, {});
       ++id;
     }
-    pile.neighborhood.rebuild(pile.store);
-    return observe::analyse({comm_, scene, pile.store, pile.neighborhood, range});
+    bed.neighborhood.rebuild(bed.store);
+    return observe::analyse({comm_, scene, bed.store, bed.neighborhood, range});
   }
 };
 

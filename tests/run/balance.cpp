@@ -8,7 +8,7 @@
 #include <random>
 
 #include "observe/measure.hpp"
-#include "support/placed_pile.hpp"
+#include "support/placed_bed.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 using test::Bench;
 
 double ratio_of(const Bench& bench) {
-  const Pile& pile = bench.pile();
-  return observe::unbalanced_force(pile.comm, pile.store, bench.scene(), pile.stepper.law(), pile.neighborhood);
+  const Bed& bed = bench.bed();
+  return observe::unbalanced_force(bed.comm, bed.store, bench.scene(), bed.stepper.law(), bed.neighborhood);
 }
 
 double mass_of(double r) { return 1000.0 * 4.0 / 3.0 * std::numbers::pi * r * r * r; }
@@ -52,21 +52,20 @@ TEST(Balance, OfOneOnTheFloorByHand) {
 
 // Particles that overlap and slide in mid-air: mean m |dv| / dt of a step, over the mean force of the contacts.
 double ratio_by_a_step(Bench& bench, std::int64_t count) {
-  const Pile& pile = bench.pile();
+  const Bed& bed = bench.bed();
   std::vector<double> forces;
-  for (const observe::ContactForce& row :
-       observe::contact_forces(pile.store, bench.scene(), pile.neighborhood.pairs())) {
+  for (const observe::ContactForce& row : observe::contact_forces(bed.store, bench.scene(), bed.neighborhood.pairs())) {
     forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
   }
-  const auto contacts = static_cast<double>(pile.comm.sum(std::ssize(forces)));
-  const double mean_force = comm::exact_sum(pile.comm, forces) / contacts;
+  const auto contacts = static_cast<double>(bed.comm.sum(std::ssize(forces)));
+  const double mean_force = comm::exact_sum(bed.comm, forces) / contacts;
   std::vector<Bench::State> before;
   std::vector<double> radius(static_cast<std::size_t>(count), 0.0);
   for (std::int64_t id = 0; id < count; ++id) before.push_back(bench.state(id));
-  for (LocalIndex i = 0; i < pile.store.owned(); ++i) {
-    radius[static_cast<std::size_t>(pile.store.ids()[static_cast<std::size_t>(i)])] = pile.store.radius(i);
+  for (LocalIndex i = 0; i < bed.store.owned(); ++i) {
+    radius[static_cast<std::size_t>(bed.store.ids()[static_cast<std::size_t>(i)])] = bed.store.radius(i);
   }
-  pile.comm.max(radius);
+  bed.comm.max(radius);
   bench.step();
   double sum = 0.0;
   for (std::int64_t id = 0; id < count; ++id) {

@@ -19,7 +19,7 @@ input::Input scene_of(input::Decomposition kind) {
   in.container.size = {0.44, 0.3, 0.3};
   in.name = "counters";
   in.layers.thickness = 0.1;
-  in.layers.fraction = 0.1;  // few rounds of darts
+  in.layers.fraction = 0.1;  // few rounds of trials
   in.layers.duration = 0.03;
   in.layers.maximum = 2;
   in.layers.velocity = {0.5, 0.3, -2.0};
@@ -27,7 +27,7 @@ input::Input scene_of(input::Decomposition kind) {
   in.jamming.gravity = 10.0;
   in.dynamics.time_step = 2e-4;
   in.dynamics.window = 1;
-  in.dynamics.thaw = 0.01;
+  in.dynamics.relaxation = 0.01;
   in.output.log_every = 0.01;
   in.parallel.decomposition = kind;
   return in;

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "support/placed_pile.hpp"
+#include "support/placed_bed.hpp"
 
 namespace packmpi::run {
 namespace {

@@ -17,7 +17,7 @@
 #include "pack/pack.hpp"
 #include "rsa/insert.hpp"
 #include "run/make_pack.hpp"
-#include "support/placed_pile.hpp"
+#include "support/placed_bed.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -65,7 +65,7 @@ class Extremes : public ::testing::Test {
     return record;
   }
   // The scene ends right: nobody lost, outside or pressed too far.
-  report::RunRecord sound(const Set& set) {
+  report::RunRecord valid(const Set& set) {
     report::RunRecord record = pack(set);
     EXPECT_EQ(record.audit.found, record.audit.expected);
     EXPECT_EQ(record.audit.non_finite + record.audit.outside, 0);
@@ -94,7 +94,7 @@ double resting(double gravity) {
 }
 
 TEST_F(Extremes, ModulusOf1e12) {
-  const auto record = sound({"particles.youngs_modulus=1e12", "layers.duration=0.02", "layers.velocity=[0, 0, -5]"});
+  const auto record = valid({"particles.youngs_modulus=1e12", "layers.duration=0.02", "layers.velocity=[0, 0, -5]"});
   EXPECT_LT(record.audit.worst_overlap, 1e-2);
 }
 
@@ -102,23 +102,23 @@ TEST_F(Extremes, ModulusOf1e4) {
   EXPECT_THAT(refused({"particles.youngs_modulus=1e4", "jamming.gravity=500", "dynamics.time_step=1e-4"},
                       ExitCode::numerical_failure),
               HasSubstr("of the smaller radius, beyond 0.5 of it"));
-  (void)sound({"particles.youngs_modulus=1e4", "jamming.gravity=0.05", "layers.duration=4"});
+  (void)valid({"particles.youngs_modulus=1e4", "jamming.gravity=0.05", "layers.duration=4"});
 }
 
 TEST_F(Extremes, RadiusOfAMicrometre) {
-  const auto record = sound({"container.size=[1e-5, 1e-5, 2.5e-6]", "particles.radius.value=1e-6",
+  const auto record = valid({"container.size=[1e-5, 1e-5, 2.5e-6]", "particles.radius.value=1e-6",
                              "layers.thickness=1e-5", "layers.duration=2e-3"});
   EXPECT_LT(record.top, 1e-5);
 }
 
 TEST_F(Extremes, RadiusOfAKilometre) {
-  const auto record = sound({"container.size=[1e4, 1e4, 2.5e3]", "particles.radius.value=1e3", "layers.thickness=1e4",
+  const auto record = valid({"container.size=[1e4, 1e4, 2.5e3]", "particles.radius.value=1e3", "layers.thickness=1e4",
                              "layers.duration=120", "particles.youngs_modulus=1e10", "output.log_every=1"});
   EXPECT_NEAR(record.floor_force, record.weight, 0.2 * record.weight);
 }
 
 TEST_F(Extremes, OneParticleRestsOnItsHertzOverlap) {  // and so few that none is asked for: one is the least
-  const auto record = sound({"layers.fraction=1e-5", "layers.duration=2", "drag.coefficient=0.05"});
+  const auto record = valid({"layers.fraction=1e-5", "layers.duration=2", "drag.coefficient=0.05"});
   EXPECT_EQ(record.particles, 1);
   EXPECT_NEAR(record.floor_force, record.weight, 1e-3 * record.weight);
   EXPECT_NEAR(record.audit.worst_wall_penetration, resting(5.0), 1e-3 * resting(5.0));
@@ -130,14 +130,14 @@ TEST_F(Extremes, AnEmptyLayer) {
   test::Bench bench(comm_, test::small_input(3, 1.0, 0.02));  // nobody is there, on any rank
   bench.start();
   bench.step(200);
-  const Pile& pile = bench.pile();
+  const Bed& bed = bench.bed();
   const auto contacts =
-      observe::contacts(comm_, pile.store, bench.scene(), pile.neighborhood.pairs(), pile.neighborhood.walls());
+      observe::contacts(comm_, bed.store, bench.scene(), bed.neighborhood.pairs(), bed.neighborhood.walls());
   EXPECT_EQ(contacts.pairs, 0);
   EXPECT_EQ(contacts.coordination + contacts.mean_overlap + contacts.rattlers, 0.0);
-  EXPECT_EQ(pile.height(), 0.0);
-  EXPECT_EQ(observe::motion(comm_, pile.store, bench.scene()).kinetic_energy, 0.0);
-  EXPECT_EQ(observe::density(comm_, pile.store, bench.scene()).phi, 0.0);
+  EXPECT_EQ(bed.height(), 0.0);
+  EXPECT_EQ(observe::motion(comm_, bed.store, bench.scene()).kinetic_energy, 0.0);
+  EXPECT_EQ(observe::density(comm_, bed.store, bench.scene()).phi, 0.0);
 }
 
 // Two that overlap and fall side by side: mirror images for good, in heights and speeds to the last bit.
@@ -159,7 +159,7 @@ TEST_F(Extremes, TwoParticlesAtTheSameHeight) {
 
 TEST_F(Extremes, RatiosOfRadiiFromTwoToFifty) {
   for (const double ratio : {2.0, 5.0, 10.0, 20.0, 50.0}) {
-    const auto record = sound({fmt::format("particles.radius={{ distribution = \"bidisperse\", small = {:.17g}, large "
+    const auto record = valid({fmt::format("particles.radius={{ distribution = \"bidisperse\", small = {:.17g}, large "
                                            "= 0.02, large_share = 0.5, weighting = \"number\" }}",
                                            0.02 / ratio),
                                "layers.fraction=0.05", "layers.duration=0.1", "layers.velocity=[0, 0, -1]"});
@@ -178,11 +178,11 @@ TEST_F(Extremes, BoxOfAMillionRadii) {
     EXPECT_NEAR(record.audit.worst_wall_penetration, resting(5.0), 1e-3 * resting(5.0));
     EXPECT_NEAR(record.height / static_cast<double>(record.particles), 0.04 / (5e5 * 5e5), 1e-3 * 0.04 / (5e5 * 5e5));
   };
-  expect_rest(sound(wide));
+  expect_rest(valid(wide));
   Set periodic = wide;
   periodic.emplace_back("container.boundary=[\"periodic\", \"periodic\"]");
-  expect_rest(sound(periodic));
-  const auto flat = sound({"container.dimension=2", "container.size=[2e4, 0.05]", "container.boundary=[\"wall\"]",
+  expect_rest(valid(periodic));
+  const auto flat = valid({"container.dimension=2", "container.size=[2e4, 0.05]", "container.boundary=[\"wall\"]",
                            "layers.fraction=1e-5", "layers.duration=0.5"});
   EXPECT_GT(flat.particles, 20);
   EXPECT_THAT(refused({"container.size=[3e7, 0.2, 0.05]", "layers.fraction=1e-10"}),
@@ -200,16 +200,16 @@ TEST_F(Extremes, BoxOfAMillionRadii) {
   }
   bench.start();
   bench.step(10);
-  EXPECT_EQ(observe::contacts(comm_, bench.pile().store, bench.scene(), bench.neighborhood().pairs(),
+  EXPECT_EQ(observe::contacts(comm_, bench.bed().store, bench.scene(), bench.neighborhood().pairs(),
                               bench.neighborhood().walls())
                 .pairs,
             9);
 }
 
 TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
-  (void)sound({"contact.damping_ratio=0"});
-  (void)sound({"contact.damping_ratio=1"});
-  (void)sound({"contact.damping_ratio=5"});  // "auto": the limit is lower beyond 1
+  (void)valid({"contact.damping_ratio=0"});
+  (void)valid({"contact.damping_ratio=1"});
+  (void)valid({"contact.damping_ratio=5"});  // "auto": the limit is lower beyond 1
   EXPECT_THAT(refused({"contact.damping_ratio=5", "dynamics.time_step=1e-3"}), HasSubstr("damping_ratio 5"));
 
   // Head on at +-1 m/s, until long after they parted. With s = overlap^{5/4} the law is that of a linear oscillator
@@ -234,8 +234,8 @@ TEST_F(Extremes, DampingFromNoneToFiveTimesCritical) {
 }
 
 TEST_F(Extremes, FrictionOfNoneAndTwo) {
-  (void)sound({"contact.friction=0"});
-  (void)sound({"contact.friction=2"});
+  (void)valid({"contact.friction=0"});
+  (void)valid({"contact.friction=2"});
 
   // Without spin a particle slides v^2 / (2 mu g) on the floor, or for ever.
   const auto slide = [&](double mu, double seconds) {
@@ -262,7 +262,7 @@ TEST_F(Extremes, SlipExactlyZero) {  // has no direction
                          Set{"contact.regularisation=viscous", "contact.slip_time=1e-2"}, Set{"dynamics.theta=1"}}) {
     Set one{"layers.fraction=1e-5", "contact.friction=0.5"};
     one.insert(one.end(), law.begin(), law.end());
-    (void)sound(one);
+    (void)valid(one);
     ASSERT_EQ(rows_.id.size(), 1U);
     EXPECT_EQ(rows_.velocity[0][0], 0.0) << law[0];
     EXPECT_EQ(rows_.velocity[0][1], 0.0) << law[0];
@@ -285,7 +285,7 @@ TEST_F(Extremes, SlipExactlyZero) {  // has no direction
 }
 
 TEST_F(Extremes, WithoutGravityNothingSettlesAndLayersEnd) {
-  const auto record = sound({"jamming.gravity=0", "dynamics.time_step=1e-4", "layers.duration=0.01", "layers.maximum=0",
+  const auto record = valid({"jamming.gravity=0", "dynamics.time_step=1e-4", "layers.duration=0.01", "layers.maximum=0",
                              "dynamics.stop=settled"});
   EXPECT_TRUE(record.reached);
   EXPECT_EQ(record.kinetic_energy, 0.0);
@@ -297,7 +297,7 @@ TEST_F(Extremes, WithoutGravityNothingSettlesAndLayersEnd) {
 TEST_F(Extremes, DragDominating) {
   const double dt = 1e-4;
   const auto drag = [&](double share) { return fmt::format("drag.coefficient={:.17g}", share * brick_mass / dt); };
-  const auto record = sound({drag(0.5), "dynamics.time_step=1e-4", "layers.duration=0.1"});
+  const auto record = valid({drag(0.5), "dynamics.time_step=1e-4", "layers.duration=0.1"});
   const double speed = 5.0 * dt / 0.5;
   const double expected = 0.5 * brick_mass * speed * speed * static_cast<double>(record.particles);
   EXPECT_NEAR(record.kinetic_energy, expected, 1e-9 * expected);
@@ -307,8 +307,8 @@ TEST_F(Extremes, DragDominating) {
 TEST_F(Extremes, StepsFromATenthToAHundredTimesTheLimit) {
   const double limit = scene::build(input::parse(brick, "brick.toml", {})).time_step;
   const auto step = [&](double factor) { return "dynamics.time_step=" + std::to_string(factor * limit); };
-  (void)sound({"dynamics.time_step=" + fmt::format("{:.17g}", 0.1 * limit), "layers.duration=0.1"});
-  (void)sound({"dynamics.time_step=" + fmt::format("{:.17g}", 0.999 * limit)});
+  (void)valid({"dynamics.time_step=" + fmt::format("{:.17g}", 0.1 * limit), "layers.duration=0.1"});
+  (void)valid({"dynamics.time_step=" + fmt::format("{:.17g}", 0.999 * limit)});
   for (const double factor : {1.1, 10.0, 100.0}) EXPECT_THAT(refused({step(factor)}), HasSubstr("limit of eq. (23)"));
 }
 
@@ -324,7 +324,7 @@ TEST_F(Extremes, SaturationAndSizesThatCannotFit) {
 }
 
 TEST_F(Extremes, PeriodicAxisOfTheLeastLegalWidth) {
-  (void)sound({"container.boundary=[\"periodic\", \"wall\"]", "container.size=[0.1261, 0.2, 0.05]"});
+  (void)valid({"container.boundary=[\"periodic\", \"wall\"]", "container.size=[0.1261, 0.2, 0.05]"});
   EXPECT_THAT(refused({"container.boundary=[\"periodic\", \"wall\"]", "container.size=[0.1259, 0.2, 0.05]"}),
               HasSubstr("a periodic axis must be at least 0.126 m"));
 }
@@ -343,7 +343,7 @@ TEST_F(Extremes, GradedSizesThatCannotFit) {
   EXPECT_THAT(refused({graded("0.02"), "layers.fraction=0.5", "layers.attempts=200"}), HasSubstr("at size class"));
   EXPECT_THAT(refused({graded("0.02"), "layers.fraction=0.9"}), HasSubstr("cannot be reached by random insertion"));
   // Just as high as the layer: all large ones have their centres at one height.
-  (void)sound({graded("0.02"), "layers.thickness=0.04", "layers.fraction=0.1"});
+  (void)valid({graded("0.02"), "layers.thickness=0.04", "layers.fraction=0.1"});
 }
 
 // As many ranks as columns, or one too many.
@@ -352,7 +352,7 @@ TEST_F(Extremes, MoreRanksThanColumns) {
   const auto across = [](int columns) { return fmt::format("container.size=[{}, 0.05, 0.05]", 0.0421 * columns); };
   for (const char* kind : {"slab", "pencil", "metis"}) {
     const std::string decomposition = fmt::format("parallel.decomposition={}", kind);
-    (void)sound({across(std::max(2, ranks)), "layers.fraction=0.05", decomposition});
+    (void)valid({across(std::max(2, ranks)), "layers.fraction=0.05", decomposition});
     if (ranks < 3) continue;  // a box of one column is narrower than two particles
     EXPECT_THAT(refused({across(ranks - 1), "layers.fraction=0.05", decomposition}),
                 HasSubstr(fmt::format("use at most {} ranks", ranks - 1)));
@@ -361,9 +361,9 @@ TEST_F(Extremes, MoreRanksThanColumns) {
 
 // What is smaller than any number that matters counts as nothing, and -0 as 0: to the bit.
 TEST_F(Extremes, DenormalsAndMinusZero) {
-  (void)sound({});
+  (void)valid({});
   const pack::PackRows plain = rows_;
-  (void)sound({"layers.velocity=[-0.0, 4.9e-324, -0.0]", "layers.spin=[-0.0, -0.0, 4.9e-324]",
+  (void)valid({"layers.velocity=[-0.0, 4.9e-324, -0.0]", "layers.spin=[-0.0, -0.0, 4.9e-324]",
                "drag.fluid_velocity=[-0.0, -0.0, -0.0]", "drag.coefficient=4.9e-324"});
   for (std::size_t k = 0; k < plain.id.size(); ++k) {
     EXPECT_EQ(rows_.position[k], plain.position[k]);
@@ -375,7 +375,7 @@ TEST_F(Extremes, DenormalsAndMinusZero) {
     for (const char* value : {"4.9e-324", "-0.0"}) (void)refused({fmt::format("{}={}", tiny, value)});
   }
   (void)refused({"layers.duration=-0.0"});
-  (void)sound({"layers.duration=4.9e-324"});  // a step
+  (void)valid({"layers.duration=4.9e-324"});  // a step
 }
 
 // The same layer under other names: the same motion, contacts and frozen ones, to the bit.
@@ -384,29 +384,29 @@ TEST_F(Extremes, IdsBeyondTwoToTheThirtyThird) {
   using Motion = std::vector<std::tuple<GlobalId, Vec3, Vec3>>;
   using Forces = std::vector<std::tuple<GlobalId, GlobalId, Vec3>>;
   const auto settle = [&](GlobalId base) {
-    Pile pile(comm_, scene);
+    Bed bed(comm_, scene);
     const rsa::LayerRegion region{.layer = 0, .bottom = 0.0, .thickness = 0.2, .first_id = base};
-    const rsa::Insertion got = rsa::insert(comm_, scene, pile.ownership, region, pile.store);
-    pile.neighborhood.rebuild(pile.store);
-    pile.stepper.advance(pile.store, pile.neighborhood, 600);
-    pile.neighborhood.freeze(pile.store, base + got.inserted / 2);
-    pile.neighborhood.rebuild(pile.store);
-    pile.stepper.advance(pile.store, pile.neighborhood, 100);
-    EXPECT_EQ(comm_.sum(std::int64_t{pile.neighborhood.frozen().owned()}), got.inserted / 2);
-    pile.neighborhood.thaw(pile.store);
-    pile.neighborhood.rebuild(pile.store);
-    pile.stepper.advance(pile.store, pile.neighborhood, 100);
-    EXPECT_EQ(observe::soundness(comm_, pile.store, scene).found, got.inserted);
-    const double energy = observe::energy_of(comm_, pile.store, scene, base, base + got.inserted);
+    const rsa::Insertion got = rsa::insert(comm_, scene, bed.ownership, region, bed.store);
+    bed.neighborhood.rebuild(bed.store);
+    bed.stepper.advance(bed.store, bed.neighborhood, 600);
+    bed.neighborhood.freeze(bed.store, base + got.inserted / 2);
+    bed.neighborhood.rebuild(bed.store);
+    bed.stepper.advance(bed.store, bed.neighborhood, 100);
+    EXPECT_EQ(comm_.sum(std::int64_t{bed.neighborhood.frozen().owned()}), got.inserted / 2);
+    bed.neighborhood.release(bed.store);
+    bed.neighborhood.rebuild(bed.store);
+    bed.stepper.advance(bed.store, bed.neighborhood, 100);
+    EXPECT_EQ(observe::validity(comm_, bed.store, scene).found, got.inserted);
+    const double energy = observe::energy_of(comm_, bed.store, scene, base, base + got.inserted);
     EXPECT_GT(energy, 0.0);
-    EXPECT_EQ(observe::energy_of(comm_, pile.store, scene, base + got.inserted, base + 2 * got.inserted), 0.0);
+    EXPECT_EQ(observe::energy_of(comm_, bed.store, scene, base + got.inserted, base + 2 * got.inserted), 0.0);
     Motion motion;
-    for (LocalIndex i = 0; i < pile.store.owned(); ++i) {
-      motion.emplace_back(pile.store.ids()[static_cast<std::size_t>(i)] - base, pile.store.position(i),
-                          pile.store.velocity(i));
+    for (LocalIndex i = 0; i < bed.store.owned(); ++i) {
+      motion.emplace_back(bed.store.ids()[static_cast<std::size_t>(i)] - base, bed.store.position(i),
+                          bed.store.velocity(i));
     }
     Forces forces;
-    for (const auto& c : observe::contact_forces(pile.store, scene, pile.neighborhood.pairs())) {
+    for (const auto& c : observe::contact_forces(bed.store, scene, bed.neighborhood.pairs())) {
       EXPECT_LT(c.first, c.second);
       forces.emplace_back(c.first - base, c.second - base, c.force);
     }

@@ -1,5 +1,5 @@
 // States that must not be: each is found in time, the same words come on all ranks and on any number of them, and the
-// last sound checkpoint stays.
+// last valid checkpoint stays.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 
 #include "input/read.hpp"
 #include "pack/checkpoint.hpp"
+#include "run/bed.hpp"
 #include "run/make_pack.hpp"
-#include "run/pile.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -23,7 +23,7 @@ class Guards : public ::testing::Test {
  protected:
   comm::Comm comm_{MPI_COMM_WORLD};
   scene::Scene scene_ = scene::build(input());
-  Pile pile_{comm_, scene_};
+  Bed bed_{comm_, scene_};
 
   static input::Input input() {
     input::Input in = test::small_input(3, 1.0, 0.02);
@@ -33,22 +33,22 @@ class Guards : public ::testing::Test {
   void SetUp() override {
     for (GlobalId id = 0; id < 16; ++id) {
       const Vec3 x{0.05 + 0.06 * static_cast<double>(id), 0.5, 0.5};
-      if (pile_.ownership.owner(pile_.ownership.grid().column(x)) == comm_.rank()) pile_.store.add(id, x, 0.02, {}, {});
+      if (bed_.ownership.owner(bed_.ownership.grid().column(x)) == comm_.rank()) bed_.store.add(id, x, 0.02, {}, {});
     }
-    pile_.count = 16;
-    pile_.neighborhood.rebuild(pile_.store);
+    bed_.count = 16;
+    bed_.neighborhood.rebuild(bed_.store);
   }
   // The record of a particle, if it is here.
   double* record(GlobalId id) {
-    for (LocalIndex i = 0; i < pile_.store.owned(); ++i) {
-      if (pile_.store.ids()[static_cast<std::size_t>(i)] == id) return pile_.store.record(i);
+    for (LocalIndex i = 0; i < bed_.store.owned(); ++i) {
+      if (bed_.store.ids()[static_cast<std::size_t>(i)] == id) return bed_.store.record(i);
     }
     return nullptr;
   }
   // The words that end the run, rank 0's, and the steps made until then. Fails if ranks differ or nothing is found.
   std::string words(std::int64_t most_steps) {
     try {
-      pile_.stepper.advance(pile_.store, pile_.neighborhood, most_steps, {.layer = 3, .step = 1000, .time = 2.0});
+      bed_.stepper.advance(bed_.store, bed_.neighborhood, most_steps, {.layer = 3, .step = 1000, .time = 2.0});
       ADD_FAILURE() << "not found in " << most_steps << " steps";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ExitCode::numerical_failure);
@@ -70,7 +70,7 @@ TEST_F(Guards, ASpeedBeyondTheScenesOwnIsFoundInTheStep) {
   const double bound = scene_.speed_bound;  // 16 sqrt(2 g h), h the height of all layers there may be
   EXPECT_NEAR(bound, 16.0 * std::sqrt(2.0 * 2.0 * 0.5 * std::ceil(1.0 / (0.2 * 0.5) + 2.0)), 1e-9);
   if (double* r = record(7)) r[4] = 0.9 * bound;
-  pile_.stepper.advance(pile_.store, pile_.neighborhood, 1);
+  bed_.stepper.advance(bed_.store, bed_.neighborhood, 1);
   if (double* r = record(7)) r[4] = 1.1 * bound;
   const std::string said = words(1);
   EXPECT_THAT(said,
@@ -83,7 +83,7 @@ TEST_F(Guards, ASpeedBeyondTheScenesOwnIsFoundInTheStep) {
 TEST_F(Guards, AStepOfHalfARadiusIsTooFar) {
   scene::Stage stage = scene_.last();
   stage.time_step = 1e-3;
-  pile_.stepper.use(stage);
+  bed_.stepper.use(stage);
   if (double* r = record(7)) r[4] = 10.1;
   EXPECT_THAT(words(1),
               ::testing::HasSubstr("particle 7 is faster than this scene can make it: 10.1 m/s, beyond 10 m/s"));
@@ -91,7 +91,7 @@ TEST_F(Guards, AStepOfHalfARadiusIsTooFar) {
 
 TEST_F(Guards, ADeepOverlapIsFoundByItsForceAndTheNeighboursAreNamed) {
   if (double* r = record(7)) r[0] += 0.033;  // 8 is 0.06 away: 0.013 of 0.02 remain, and only they are listed
-  pile_.neighborhood.rebuild(pile_.store);
+  bed_.neighborhood.rebuild(bed_.store);
   const std::string said = words(100);
   EXPECT_THAT(said,
               ::testing::MatchesRegex(
@@ -102,7 +102,7 @@ TEST_F(Guards, ADeepOverlapIsFoundByItsForceAndTheNeighboursAreNamed) {
 
 TEST_F(Guards, CoincidentCentresHaveNoNormalButAreFound) {
   if (double* r = record(7)) r[0] = 0.05 + 0.06 * 8;
-  pile_.neighborhood.rebuild(pile_.store);
+  bed_.neighborhood.rebuild(bed_.store);
   EXPECT_THAT(words(1), ::testing::HasSubstr("it touches 8 (overlap 2 r)"));
 }
 
@@ -110,7 +110,7 @@ TEST_F(Guards, AForceBeyondTheSumsIsFoundInTheStep) {
   if (double* r = record(7)) r[0] += 0.0201;
   if (double* r = record(8)) r[4] = -70.0;  // damping at that speed
   scene_.force_quantum = 0x1p-50;           // as if the scene were a gentle one
-  pile_.neighborhood.rebuild(pile_.store);
+  bed_.neighborhood.rebuild(bed_.store);
   EXPECT_THAT(words(1), ::testing::HasSubstr("a force is beyond 1 N, the range of the sums; the fastest particle, 8:"));
 }
 
@@ -124,9 +124,9 @@ TEST_F(Guards, OutsideIsFoundWithinHalfASkin) {
 }
 
 TEST_F(Guards, CheckFindsAllOfThemAtOnce) {
-  pile_.check();
+  bed_.check();
   if (double* r = record(7)) r[1] = -0.021;
-  EXPECT_THROW(pile_.check(), Error);
+  EXPECT_THROW(bed_.check(), Error);
 }
 
 // Falls for a while, then is far too soft for its weight.
@@ -151,7 +151,7 @@ time_step = 1e-5
 every = "50 steps"
 )";
 
-TEST(GuardedRun, LeavesTheLastSoundCheckpointAndIsNotContinuedAsAnotherScene) {
+TEST(GuardedRun, LeavesTheLastValidCheckpointAndIsNotContinuedAsAnotherScene) {
   const comm::Comm comm(MPI_COMM_WORLD);
   Options options;
   options.folder =

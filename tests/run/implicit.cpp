@@ -6,7 +6,7 @@
 #include <random>
 
 #include "dynamics/implicit_system.hpp"
-#include "support/placed_pile.hpp"
+#include "support/placed_bed.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -173,7 +173,7 @@ TEST_F(Implicit, SlidingEndsInRolling) {
   EXPECT_NEAR(bench.state(0).omega[1] * 0.02, bench.state(0).v[0], 2e-3);
 }
 
-/// A pile settles far beyond the explicit step, and ends as on one rank to the solver's tolerance: floor force =
+/// A bed settles far beyond the explicit step, and ends as on one rank to the solver's tolerance: floor force =
 /// weight.
 TEST_F(Implicit, PileRestsOnItsFloor) {
   input::Input in = theta(test::small_input(3, 0.2, 0.02), 1.0);
@@ -193,7 +193,7 @@ TEST_F(Implicit, PileRestsOnItsFloor) {
   EXPECT_LT(fastest, 0.02);
   EXPECT_GT(mean, 0.02);
   EXPECT_LT(mean, 0.07);
-  EXPECT_GT(bench.pile().stepper.implicit()->counters().newton_iterations, 3000);
+  EXPECT_GT(bench.bed().stepper.implicit()->counters().newton_iterations, 3000);
 }
 
 TEST_F(Implicit, AStepThatCannotBeSolvedAtOnceIsHalved) {
@@ -204,7 +204,7 @@ TEST_F(Implicit, AStepThatCannotBeSolvedAtOnceIsHalved) {
   bench.place({0.2 + 0.0205, 0.2, 0.2}, 0.02, {-10, 0, 0});
   bench.start();
   bench.step(2);  // 50 mm each, beyond any list, and through each other
-  EXPECT_GT(bench.pile().stepper.implicit()->counters().halvings, 0);
+  EXPECT_GT(bench.bed().stepper.implicit()->counters().halvings, 0);
   EXPECT_LT(bench.state(0).v[0], -5.0) << "they bounced";
   EXPECT_NEAR(bench.state(0).v[0] + bench.state(1).v[0], 0.0, 1e-6);
 }

@@ -8,7 +8,7 @@
 
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -18,19 +18,19 @@ namespace {
 struct Layer {
   comm::Comm comm{MPI_COMM_WORLD};
   scene::Scene scene;
-  Pile pile;
-  explicit Layer(const input::Input& in) : scene(scene::build(in)), pile(comm, scene) {
+  Bed bed;
+  explicit Layer(const input::Input& in) : scene(scene::build(in)), bed(comm, scene) {
     const rsa::LayerRegion region{0, 0.3, in.layers.thickness, 0};
-    pile.count = rsa::insert(comm, scene, pile.ownership, region, pile.store).inserted;
-    pile.first_ids = {0};
-    pile.energy_given = observe::energy_of(comm, pile.store, scene, 0, pile.count);
-    pile.neighborhood.rebuild(pile.store);
+    bed.count = rsa::insert(comm, scene, bed.ownership, region, bed.store).inserted;
+    bed.first_ids = {0};
+    bed.energy_given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+    bed.neighborhood.rebuild(bed.store);
   }
   [[nodiscard]] observe::Ledger now() const {
-    return observe::ledger(comm, pile.store, scene, pile.stepper.law(), pile.neighborhood);
+    return observe::ledger(comm, bed.store, scene, bed.stepper.law(), bed.neighborhood);
   }
   void advance(double seconds) {
-    pile.stepper.advance(pile.store, pile.neighborhood, std::llround(seconds / scene.time_step));
+    bed.stepper.advance(bed.store, bed.neighborhood, std::llround(seconds / scene.time_step));
   }
 };
 
@@ -60,10 +60,10 @@ double worst_departure(const Case& what, double step, double& most_elastic) {
   for (int k = 0; k < 40; ++k) {
     layer.advance(0.01);
     const observe::Ledger now = layer.now();
-    worst = std::max(worst, std::abs(total(now) - layer.pile.energy_given));
-    most_elastic = std::max(most_elastic, now.elastic_energy / layer.pile.energy_given);
+    worst = std::max(worst, std::abs(total(now) - layer.bed.energy_given));
+    most_elastic = std::max(most_elastic, now.elastic_energy / layer.bed.energy_given);
   }
-  return worst / layer.pile.energy_given;
+  return worst / layer.bed.energy_given;
 }
 
 TEST(Ledger, EnergyStaysToFirstOrderInTheStep) {
@@ -86,16 +86,16 @@ TEST(Ledger, MomentumStaysWithoutWalls) {
     in.contact.damping_ratio = 0.2;
     in.layers.velocity = {1.0, 0.0, 0.0};  // eq. (23) wants a speed
     Layer layer(in);
-    for (LocalIndex i = 0; i < layer.pile.store.owned(); ++i) {  // every other one the other way, and a spin
-      double* record = layer.pile.store.record(i);
-      const GlobalId id = layer.pile.store.ids()[static_cast<std::size_t>(i)];
-      if (id % 2 == 1) record[layer.pile.store.layout().velocity] = -1.5;
-      record[layer.pile.store.layout().spin] = 0.3;
+    for (LocalIndex i = 0; i < layer.bed.store.owned(); ++i) {  // every other one the other way, and a spin
+      double* record = layer.bed.store.record(i);
+      const GlobalId id = layer.bed.store.ids()[static_cast<std::size_t>(i)];
+      if (id % 2 == 1) record[layer.bed.store.layout().velocity] = -1.5;
+      record[layer.bed.store.layout().spin] = 0.3;
     }
-    layer.pile.neighborhood.rebuild(layer.pile.store);
+    layer.bed.neighborhood.rebuild(layer.bed.store);
     const observe::Ledger before = layer.now();
     const double sum =
-        std::sqrt(2.0 * before.kinetic_energy * observe::motion(layer.comm, layer.pile.store, layer.scene).mass);
+        std::sqrt(2.0 * before.kinetic_energy * observe::motion(layer.comm, layer.bed.store, layer.scene).mass);
     layer.advance(0.1);
     const observe::Ledger after = layer.now();
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(after.momentum[a], before.momentum[a], 1e-13 * sum);
@@ -114,17 +114,17 @@ TEST(Ledger, LossesAreBookedAsDissipated) {  // two spheres head-on, of the lite
   in.contact.tension_cutoff = false;
   Layer layer(in);
   const std::vector<LocalIndex> nobody;
-  layer.pile.store.keep(nobody);
+  layer.bed.store.keep(nobody);
   for (const int side : {0, 1}) {
     const Vec3 x{0.2299 + 0.0402 * side, 0.25, 0.25};  // on two ranks
-    const bool mine = layer.pile.ownership.owner(layer.pile.ownership.grid().column(x)) == layer.comm.rank();
-    if (mine) layer.pile.store.add(side, x, 0.02, {side == 0 ? 0.5 : -0.5, 0.0, 0.0}, {});
+    const bool mine = layer.bed.ownership.owner(layer.bed.ownership.grid().column(x)) == layer.comm.rank();
+    if (mine) layer.bed.store.add(side, x, 0.02, {side == 0 ? 0.5 : -0.5, 0.0, 0.0}, {});
   }
-  layer.pile.neighborhood.rebuild(layer.pile.store);
-  layer.pile.energy_given = observe::energy_of(layer.comm, layer.pile.store, layer.scene, 0, 2);
+  layer.bed.neighborhood.rebuild(layer.bed.store);
+  layer.bed.energy_given = observe::energy_of(layer.comm, layer.bed.store, layer.scene, 0, 2);
   layer.advance(0.02);
-  const double dissipated = layer.pile.energy_given - total(layer.now());
-  EXPECT_NEAR(dissipated / layer.pile.energy_given, 1.0 - restitution * restitution, 1e-3);
+  const double dissipated = layer.bed.energy_given - total(layer.now());
+  EXPECT_NEAR(dissipated / layer.bed.energy_given, 1.0 - restitution * restitution, 1e-3);
 }
 
 TEST(Ledger, TheSameBitsOnAnyNumberOfRanks) {
@@ -132,7 +132,7 @@ TEST(Ledger, TheSameBitsOnAnyNumberOfRanks) {
   Layer all(in);
   all.advance(0.35);
   const comm::Comm self(MPI_COMM_SELF);
-  Pile one(self, all.scene);
+  Bed one(self, all.scene);
   one.count = rsa::insert(self, all.scene, one.ownership, {0, 0.3, in.layers.thickness, 0}, one.store).inserted;
   one.neighborhood.rebuild(one.store);
   one.stepper.advance(one.store, one.neighborhood, 3500);

@@ -61,7 +61,7 @@ input::Input scene_of(const Kind& kind) {
   in.dynamics.time_step = 1e-4;
   in.dynamics.rotation = kind.rotation;
   in.dynamics.window = kind.window;
-  if (kind.window > 0) in.dynamics.thaw = 0.01;
+  if (kind.window > 0) in.dynamics.relaxation = 0.01;
   if (kind.soft_and_settled) {
     in.layers.youngs_modulus = 0.1 * in.particles.youngs_modulus;
     in.layers.time_step = 1e-4;
@@ -181,7 +181,7 @@ class Restart : public ::testing::TestWithParam<Kind> {
                         r.top,
                         r.phi,
                         r.phi_bulk,
-                        r.creep,
+                        r.compaction_rate,
                         r.coordination,
                         r.rattlers,
                         r.mean_overlap,
@@ -189,13 +189,13 @@ class Restart : public ::testing::TestWithParam<Kind> {
                         r.floor_force,
                         r.weight,
                         r.mean_radius,
-                        r.height_before_thaw};
+                        r.height_before_relaxation};
     };
     EXPECT_EQ(numbers(x), numbers(y));
     EXPECT_EQ(x.steps, y.steps);
     EXPECT_EQ(x.particle_steps, y.particle_steps);
-    EXPECT_EQ(x.thaws, y.thaws);
-    EXPECT_EQ(x.thaw_steps, y.thaw_steps);
+    EXPECT_EQ(x.relaxations, y.relaxations);
+    EXPECT_EQ(x.relaxation_steps, y.relaxation_steps);
     ASSERT_EQ(x.layers.size(), y.layers.size());
     for (std::size_t k = 0; k < x.layers.size(); ++k) {
       EXPECT_EQ(x.layers[k].height, y.layers[k].height);
@@ -349,7 +349,7 @@ TEST_P(RestartRules, StoppedInAnInsertion) {
   expect_same(left(), whole);
 }
 
-// The names of the slots mean nothing: the newest sound one is taken.
+// The names of the slots mean nothing: the newest valid one is taken.
 TEST_P(RestartRules, SwappedSlots) {
   const Left whole = untouched();
   in_.checkpoint.every = "60 steps";
@@ -422,7 +422,8 @@ TEST_P(RestartRules, TimeIsUp) {
 
 TEST(SceneChange, OnlyWhatChangesBits) {
   const std::string before =
-      "seed = 1\n\n[layers]\nmaximum = 0\n\n[dynamics]\nwindow = 0\nthaw = \"auto\"\n\n[output]\nlog_every = 0.1\n";
+      "seed = 1\n\n[layers]\nmaximum = 0\n\n[dynamics]\nwindow = 0\nrelaxation = \"auto\"\n\n[output]\nlog_every = "
+      "0.1\n";
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string now = before;
     now.replace(now.find(from), from.size(), to);

@@ -62,14 +62,14 @@ bool anything_touches(const pack::PackRows& rows) {
   return std::ranges::any_of(rows.contacts, [](std::int32_t n) { return n > 0; });
 }
 
-// A window of `window` layers, fast layers so that several land, and a thaw; the radius of the scene above.
+// A window of `window` layers, fast layers so that several land, and a final relaxation; the radius of the scene above.
 input::Input window_scene(int dimension, bool graded, bool periodic, bool near_field, int window) {
   input::Input in = scene_of(dimension, graded, periodic, near_field);
   in.container.size.back() = 0.4;
   in.layers.thickness = 0.08;
   in.layers.maximum = 4;
   in.dynamics.window = window;
-  in.dynamics.thaw = 0.01;
+  in.dynamics.relaxation = 0.01;
   return in;
 }
 

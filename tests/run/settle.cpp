@@ -40,7 +40,7 @@ report::RunRecord pack(const input::Input& in) {
   return record;
 }
 
-void expect_sound(const report::RunRecord& record) {
+void expect_valid(const report::RunRecord& record) {
   EXPECT_EQ(record.audit.found, record.audit.expected);
   EXPECT_EQ(record.audit.outside, 0);
   EXPECT_EQ(record.audit.non_finite, 0);
@@ -59,33 +59,34 @@ TEST(Settle, HardeningRisesInEqualRatiosToTheHardModulus) {
   }
 }
 
-TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheThawAll) {
+TEST(Settle, WindowMovesOnlyTheNewestLayersAndTheRelaxationAll) {
   input::Input in = brick();
   in.dynamics.window = 1;
-  in.dynamics.thaw = 0.4;
+  in.dynamics.relaxation = 0.4;
   const report::RunRecord record = pack(in);
-  expect_sound(record);
+  expect_valid(record);
   std::int64_t expected = 0;
   for (const report::LayerRow& row : record.layers) {
     EXPECT_EQ(row.steps, 4000);
     expected += row.steps * row.inserted;
   }
-  EXPECT_EQ(record.thaws, 1);
-  EXPECT_EQ(record.thaw_steps, 2000);
-  EXPECT_EQ(record.particle_steps, expected + record.thaw_steps * record.particles);
-  EXPECT_LT(record.height, record.height_before_thaw + 1e-3);
+  EXPECT_EQ(record.relaxations, 1);
+  EXPECT_EQ(record.relaxation_steps, 2000);
+  EXPECT_EQ(record.particle_steps, expected + record.relaxation_steps * record.particles);
+  EXPECT_LT(record.height, record.height_before_relaxation + 1e-3);
 }
 
-// A pile of which three layers stand at H_d before the thaw and below it afterwards: by `missed` of what they sink.
+// A bed of which three layers stand at H_d before the final relaxation and below it afterwards: by `missed` of what
+// they sink.
 report::RunRecord pack_that_sinks(double duration, double missed) {
   input::Input in = brick();
-  in.layers.duration = duration;  // short: much is left to the thaw
+  in.layers.duration = duration;  // short: much is left to the final relaxation
   in.layers.maximum = 3;
   in.dynamics.window = 1;
-  in.dynamics.thaw = 0.8;
+  in.dynamics.relaxation = 0.8;
   const report::RunRecord three = pack(in);
-  EXPECT_LT(three.height, three.height_before_thaw - 1e-3);
-  in.container.size.back() = three.height + missed * (three.height_before_thaw - three.height);
+  EXPECT_LT(three.height, three.height_before_relaxation - 1e-3);
+  in.container.size.back() = three.height + missed * (three.height_before_relaxation - three.height);
   in.layers.maximum = 0;
   return pack(in);
 }
@@ -93,37 +94,37 @@ report::RunRecord pack_that_sinks(double duration, double missed) {
 TEST(Settle, AnotherLayerFollowsAtOnceIfThePileIsGoingToSinkBelowTheHeight) {
   const report::RunRecord record = pack_that_sinks(0.4, 0.5);
   EXPECT_EQ(record.layers.size(), 4U);
-  EXPECT_GT(record.layers[2].height, record.height_asked);
-  EXPECT_EQ(record.thaws, 1);
-  EXPECT_EQ(record.thaw_steps, 4000);
+  EXPECT_GT(record.layers[2].height, record.target_height);
+  EXPECT_EQ(record.relaxations, 1);
+  EXPECT_EQ(record.relaxation_steps, 4000);
   EXPECT_TRUE(record.reached);
   EXPECT_EQ(record.stop_reason, "height");
-  expect_sound(record);
+  expect_valid(record);
 }
 
-TEST(Settle, MoreLayersFollowIfThePileSinksInTheThawByMoreThanWasForeseen) {
+TEST(Settle, MoreLayersFollowIfTheBedSinksInTheRelaxationByMoreThanWasForeseen) {
   const report::RunRecord record = pack_that_sinks(0.1, 0.02);
   EXPECT_EQ(record.layers.size(), 4U);
-  EXPECT_GE(record.thaws, 2);
-  EXPECT_EQ(record.thaw_steps, 4000 * record.thaws);
+  EXPECT_GE(record.relaxations, 2);
+  EXPECT_EQ(record.relaxation_steps, 4000 * record.relaxations);
   EXPECT_TRUE(record.reached);
   EXPECT_EQ(record.stop_reason, "height");
-  expect_sound(record);
+  expect_valid(record);
 }
 
-// Layers of a pile whose third one stands above H_d by `share` of its rise before a short final stage.
+// Layers of a bed whose third one stands above H_d by `share` of its rise before a short final stage.
 std::size_t layers_if_above(double share, bool rotation, double friction) {
   input::Input in = brick();
   in.layers.duration = 0.4;
   in.dynamics.rotation = rotation;
   in.contact.friction = in.contact.wall_friction = friction;
-  in.dynamics.thaw = 0.05;
+  in.dynamics.relaxation = 0.05;
   in.layers.maximum = 3;
   const double rise = in.layers.thickness * in.layers.fraction / 0.58;
-  in.container.size.back() = pack(in).height_before_thaw - share * rise;
+  in.container.size.back() = pack(in).height_before_relaxation - share * rise;
   in.layers.maximum = 0;
   const report::RunRecord record = pack(in);
-  EXPECT_EQ(record.thaws, 1);
+  EXPECT_EQ(record.relaxations, 1);
   return record.layers.size();
 }
 
@@ -137,7 +138,7 @@ TEST(Settle, RoughParticlesWithoutSpinAreExpectedToSinkFarther) {
 
 TEST(Settle, AWindowOfAllLayersIsNoWindow) {
   input::Input in = brick();
-  in.dynamics.thaw = 0.1;
+  in.dynamics.relaxation = 0.1;
   const report::RunRecord all = pack(in);
   in.dynamics.window = 4;
   const report::RunRecord window = pack(in);
@@ -179,12 +180,12 @@ TEST(Settle, SoftLayersEndAsHardAsTheOthers) {
   input::Input in = brick();
   in.layers.maximum = 3;
   in.layers.duration = 1.5;  // at rest, or impacts of the last to fall set the largest overlap
-  in.dynamics.thaw = 0.6;
+  in.dynamics.relaxation = 0.6;
   const report::RunRecord hard = pack(in);
   in.layers.youngs_modulus = 1e7;
   in.layers.time_step = 5e-4;
   const report::RunRecord soft = pack(in);
-  expect_sound(soft);
+  expect_valid(soft);
   EXPECT_GT(soft.layers.back().max_overlap, 2.0 * hard.layers.back().max_overlap);  // (E ratio)^(2/3) is 4.6
   EXPECT_NEAR(soft.mean_overlap, hard.mean_overlap, 0.25 * hard.mean_overlap);
   EXPECT_EQ(soft.layers.front().steps, 3000);

@@ -8,8 +8,8 @@ namespace packmpi::oracle {
 namespace {
 
 // True if the sphere was placed.
-bool try_dart(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& result) {
-  ++result.darts;
+bool try_place(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& result) {
+  ++result.trials;
   for (const PlacedSphere& other : result.placed) {
     if (rsa::overlap(scene.box, sphere.position, sphere.radius, other.position, other.radius)) return false;
   }
@@ -30,18 +30,18 @@ std::int64_t particles_needed(const scene::Scene& scene, const rsa::LayerRegion&
 
 Rsa insert(const scene::Scene& scene, const rsa::LayerRegion& region, std::uint32_t attempts) {
   Rsa result;
-  result.asked = particles_needed(scene, region);
+  result.target = particles_needed(scene, region);
   std::vector<std::uint64_t> left;
   for (int size_class = 0; size_class < rsa::size_classes && left.empty(); ++size_class) {
-    for (std::uint64_t particle = 0; particle < static_cast<std::uint64_t>(result.asked); ++particle) {
+    for (std::uint64_t particle = 0; particle < static_cast<std::uint64_t>(result.target); ++particle) {
       if (rsa::size_class(scene.sizes, scene.sizes.draw(region.layer, particle)) == size_class)
         left.push_back(particle);
     }
     for (std::uint32_t attempt = 0; attempt < attempts; ++attempt) {
       std::erase_if(left, [&](std::uint64_t particle) {
         const double radius = scene.sizes.draw(region.layer, particle);
-        return try_dart(scene, {particle, rsa::dart(scene, region, particle, radius, attempt), radius, attempt},
-                        result);
+        return try_place(scene, {particle, rsa::trial(scene, region, particle, radius, attempt), radius, attempt},
+                         result);
       });
     }
   }

@@ -99,8 +99,8 @@ def check_scene(text, root, folder):
     scene.write_text(blocks(text, "toml")[0])
     shown, shipped = (subprocess.run([folder / "build" / "packmpi", "check", path], capture_output=True, text=True).stdout
                       for path in (scene, root / "input" / "quickstart.toml"))
-    without_path = [line for line in shown.splitlines() if "is sound" not in line]
-    if not without_path or without_path != [line for line in shipped.splitlines() if "is sound" not in line]:
+    without_path = [line for line in shown.splitlines() if "is valid" not in line]
+    if not without_path or without_path != [line for line in shipped.splitlines() if "is valid" not in line]:
         problems.append("the scene in README.md is not input/quickstart.toml")
 
 

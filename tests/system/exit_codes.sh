@@ -9,7 +9,7 @@ failures=0
 rm -rf "$scratch"
 mkdir -p "$scratch"
 cd "$scratch" || exit 1
-# A pile of a few dozen spheres in a second or less.
+# A bed of a few dozen spheres in a second or less.
 tiny=("$input/quickstart.toml" --set 'container.size=[0.3,0.3,0.05]' --set layers.duration=0.02)
 
 # expect CODE WORDS argument ...: the program's exit code, and WORDS (an extended regular expression) in what it prints.
@@ -32,7 +32,7 @@ expect 2 'SCENE is required' run
 expect 2 'no-such.toml' no-such.toml
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
-expect 0 'is sound' check "${tiny[@]}"
+expect 0 'is valid' check "${tiny[@]}"
 must test -z "$(ls -A)"                                    # nothing was written so far
 
 expect 0 'stopped because +height' "${tiny[@]}" -o out -q

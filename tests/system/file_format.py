@@ -102,19 +102,19 @@ def check_json(path, table, page):
     summary = json.loads(path.read_text())
     names = {part: {name.split("@")[1] for name in table if name.startswith(f"/{group}/@")}
              for part, group in (("summary", "summary"), ("audit", "summary/audit"), ("provenance", "provenance"))}
-    expect(set(summary) == {"format", "format_version", "asked", "got", "sizes", "audit", "layers", "counters", "costs",
+    expect(set(summary) == {"format", "format_version", "target", "achieved", "sizes", "audit", "layers", "counters", "costs",
                             "moving_share", "provenance", "units"}, f"{path.name}: parts are {sorted(summary)}")
     for part in ("counters", "costs"):
         expect(set(summary[part]) == set(re.findall(rf"`{part}\.(\w+)`", page)),
                f"{path.name}: {part} are {sorted(summary[part])}")
         expect(all(len(numbers["of_rank"]) == summary["provenance"]["ranks"] and sum(numbers["of_rank"]) == numbers["sum"]
                    and max(numbers["of_rank"]) == numbers["max"] for numbers in summary[part].values()), f"{path.name}: {part}")
-    expect(set(summary["asked"]) | set(summary["got"]) == names["summary"] - {"units"}, f"{path.name}: asked, got")
+    expect(set(summary["target"]) | set(summary["achieved"]) == names["summary"] - {"units"}, f"{path.name}: asked, got")
     for weighting in ("number", "mass"):
         sizes = summary["sizes"][weighting]
         points = {f"d{percent}" for percent in (10, 30, 50, 60, 90)} | {"cu", "cc"}
-        expect(set(sizes) == {"asked", "got", "distance"}, f"{path.name}: sizes by {weighting}")
-        expect(set(sizes["asked"]) == points and set(sizes["got"]) == points, f"{path.name}: sizes by {weighting}")
+        expect(set(sizes) == {"target", "achieved", "distance"}, f"{path.name}: sizes by {weighting}")
+        expect(set(sizes["target"]) == points and set(sizes["achieved"]) == points, f"{path.name}: sizes by {weighting}")
     expect(set(summary["audit"]) == names["audit"], f"{path.name}: audit")
     expect(set(summary["provenance"]) == names["provenance"], f"{path.name}: provenance")
     columns = {name.split("/")[-1] for name in table if name.startswith("/summary/layers/")}

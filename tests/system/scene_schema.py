@@ -52,7 +52,7 @@ with tempfile.TemporaryDirectory() as work:
     for path in scenes:
         errors = [error.message for error in check.iter_errors(tomllib.loads(path.read_text()))]
         assert not errors, (path, errors)
-    sound = tomllib.loads(begun[1].read_text())
+    valid = tomllib.loads(begun[1].read_text())
 for path, value in [*SLIPS.items(), ("layers.thickness", None), ("particles.radius", None), ("jamming", None)]:
-    assert not check.is_valid(changed(sound, path, value)), f"{path} = {value} was taken"
+    assert not check.is_valid(changed(valid, path, value)), f"{path} = {value} was taken"
 print(f"{len(scenes)} scenes taken, {len(SLIPS) + 3} slips refused")

@@ -13,8 +13,8 @@
 namespace packmpi::run {
 
 /// State of a run on this rank. The scene and the communicator must outlive it.
-struct Pile {
-  Pile(const comm::Comm& world, const scene::Scene& what);
+struct Bed {
+  Bed(const comm::Comm& world, const scene::Scene& what);
 
   const comm::Comm& comm;
   const scene::Scene& scene;
@@ -28,7 +28,7 @@ struct Pile {
   /// [J] kinetic and potential, as the moving particles were given it: at insertion, less what the frozen took away
   double energy_given = 0.0;
   std::int64_t steps = 0;
-  std::int64_t thaw_steps = 0;              ///< of them, in final stages
+  std::int64_t relaxation_steps = 0;              ///< of them, in final relaxations
   std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
   double stepping = 0.0, inserting = 0.0;   ///< [s] wall time of this rank, since the start or restart
 
@@ -46,9 +46,9 @@ struct Pile {
   /// alike.
   void freeze_older();
   /// Brings everything frozen back into the store, at rest. Then rebuild. Every rank alike.
-  void thaw();
+  void release();
   [[nodiscard]] double top() const;     ///< [m] highest top, frozen or not. Collective
-  [[nodiscard]] double height() const;  ///< [m] of the pile by the scene's rule. Collective
+  [[nodiscard]] double height() const;  ///< [m] of the bed by the scene's rule. Collective
 
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;

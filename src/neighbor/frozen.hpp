@@ -13,9 +13,9 @@ namespace packmpi::neighbor {
 /// the order of (local column, height). They are not integrated, binned, listed or exchanged; at each rebuild those
 /// that a moving particle of the same or a touching column may reach enter its store as ghosts that are never
 /// refreshed. Which particles are frozen is a matter of their ids, so nothing here depends on the ranks.
-class Still {
+class Frozen {
  public:
-  Still(const comm::Comm& comm, const particles::Layout& layout) : comm_(&comm), store_(layout) {}
+  Frozen(const comm::Comm& comm, const particles::Layout& layout) : comm_(&comm), store_(layout) {}
 
   /// Local, but on every rank alike. Moves the owned particles of `from` with ids below `below` here and sets their
   /// velocities and spins to zero. Drops the ghosts of `from`. Then arrange().

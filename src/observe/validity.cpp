@@ -25,7 +25,7 @@ bool is_outside(const Vec3& x, const geometry::Box& box) {
 
 }  // namespace
 
-Soundness soundness(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
+Validity validity(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
   std::array<std::int64_t, 3> counts{store.owned(), 0, 0};
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     if (!is_finite(store, i)) ++counts[1];

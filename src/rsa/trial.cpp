@@ -4,9 +4,9 @@
 
 namespace packmpi::rsa {
 
-Vec3 dart(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
+Vec3 trial(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
           std::uint32_t attempt) {
-  const auto u = random::uniforms({scene.in.seed, random::Purpose::dart, region.layer, particle, attempt});
+  const auto u = random::uniforms({scene.in.seed, random::Purpose::trial, region.layer, particle, attempt});
   const geometry::Box& box = scene.box;
   Vec3 position{};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {

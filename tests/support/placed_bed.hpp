@@ -3,27 +3,27 @@
 #include <array>
 #include <cstring>
 
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::test {
 
-/// A pile of particles placed by hand. Ids in order of placing.
+/// A bed of particles placed by hand. Ids in order of placing.
 class Bench {
  public:
-  Bench(const comm::Comm& comm, const input::Input& in) : scene_(scene::build(in)), pile_(comm, scene_) {}
+  Bench(const comm::Comm& comm, const input::Input& in) : scene_(scene::build(in)), bed_(comm, scene_) {}
 
   void place(const Vec3& x, double r, const Vec3& v = {}, const Vec3& omega = {}) {
-    const auto column = pile_.ownership.grid().column(x);
-    if (pile_.ownership.owner(column) == pile_.comm.rank()) pile_.store.add(pile_.count, x, r, v, omega);
-    ++pile_.count;
+    const auto column = bed_.ownership.grid().column(x);
+    if (bed_.ownership.owner(column) == bed_.comm.rank()) bed_.store.add(bed_.count, x, r, v, omega);
+    ++bed_.count;
   }
-  void start() { pile_.neighborhood.rebuild(pile_.store); }
-  void step(std::int64_t steps = 1) { pile_.stepper.advance(pile_.store, pile_.neighborhood, steps); }
-  [[nodiscard]] const run::Pile& pile() const { return pile_; }
+  void start() { bed_.neighborhood.rebuild(bed_.store); }
+  void step(std::int64_t steps = 1) { bed_.stepper.advance(bed_.store, bed_.neighborhood, steps); }
+  [[nodiscard]] const run::Bed& bed() const { return bed_; }
   [[nodiscard]] const scene::Scene& scene() const { return scene_; }
-  [[nodiscard]] particles::Store& store() { return pile_.store; }
-  [[nodiscard]] neighbor::Neighborhood& neighborhood() { return pile_.neighborhood; }
+  [[nodiscard]] particles::Store& store() { return bed_.store; }
+  [[nodiscard]] neighbor::Neighborhood& neighborhood() { return bed_.neighborhood; }
   [[nodiscard]] double dt() const { return scene_.time_step; }
 
   struct State {
@@ -32,22 +32,22 @@ class Bench {
   /// State of a particle, on every rank (the bits travel in an integer sum: one owner).
   [[nodiscard]] State state(GlobalId id) const {
     std::array<std::int64_t, 9> bits{};
-    for (LocalIndex i = 0; i < pile_.store.owned(); ++i) {
-      if (pile_.store.ids()[static_cast<std::size_t>(i)] != id) continue;
-      const State s{pile_.store.position(i), pile_.store.velocity(i), pile_.store.spin(i)};
+    for (LocalIndex i = 0; i < bed_.store.owned(); ++i) {
+      if (bed_.store.ids()[static_cast<std::size_t>(i)] != id) continue;
+      const State s{bed_.store.position(i), bed_.store.velocity(i), bed_.store.spin(i)};
       static_assert(sizeof s == sizeof bits);
       std::memcpy(bits.data(), &s, sizeof s);
     }
-    pile_.comm.sum(bits);
+    bed_.comm.sum(bits);
     State s{};
     std::memcpy(static_cast<void*>(&s), bits.data(), sizeof s);
     return s;
   }
-  [[nodiscard]] double force() const { return pile_.comm.max(pile_.stepper.last().max_force); }
+  [[nodiscard]] double force() const { return bed_.comm.max(bed_.stepper.last().max_force); }
 
  private:
   scene::Scene scene_;
-  run::Pile pile_;
+  run::Bed bed_;
 };
 
 /// No gravity, damping, friction, drag: only what a test adds. The rank border is at half the length.

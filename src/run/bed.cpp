@@ -1,4 +1,4 @@
-#include "run/pile.hpp"
+#include "run/bed.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace packmpi::run {
 
-Pile::Pile(const comm::Comm& world, const scene::Scene& what)
+Bed::Bed(const comm::Comm& world, const scene::Scene& what)
     : comm(world),
       scene(what),
       ownership(world, what.columns(), what.in.parallel.decomposition),
@@ -16,7 +16,7 @@ Pile::Pile(const comm::Comm& world, const scene::Scene& what)
       neighborhood(world, what, ownership),
       stepper(world, what) {}
 
-void Pile::freeze_older() {
+void Bed::freeze_older() {
   const auto window = static_cast<std::size_t>(scene.in.dynamics.window);
   if (window == 0 || first_ids.size() <= window) return;
   const GlobalId before = moving_from;
@@ -25,32 +25,32 @@ void Pile::freeze_older() {
   neighborhood.freeze(store, moving_from);
 }
 
-void Pile::thaw() {
+void Bed::release() {
   if (moving_from == 0) return;
   const GlobalId before = moving_from;
   moving_from = 0;
-  neighborhood.thaw(store);
+  neighborhood.release(store);
   energy_given += observe::energy_of(comm, store, scene, 0, before);
 }
 
-double Pile::time() const {
-  return static_cast<double>(steps - thaw_steps) * scene.settling.time_step +
-         static_cast<double>(thaw_steps) * scene.time_step;
+double Bed::time() const {
+  return static_cast<double>(steps - relaxation_steps) * scene.settling.time_step +
+         static_cast<double>(relaxation_steps) * scene.time_step;
 }
 
-dynamics::Moment Pile::moment() const { return {std::ssize(first_ids), steps, time()}; }
+dynamics::Moment Bed::moment() const { return {std::ssize(first_ids), steps, time()}; }
 
-double Pile::top() const {
+double Bed::top() const {
   return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
 }
 
-double Pile::height() const {
+double Bed::height() const {
   if (scene.in.layers.height == input::HeightRule::highest) return top();
   const std::array<const particles::Store*, 2> all{&store, &neighborhood.frozen()};
   return observe::surface_height(comm, all, scene);
 }
 
-void Pile::balance() {
+void Bed::balance() {
   if (ownership.rebalance(neighborhood.column_counts(store))) {
     neighborhood.ownership_changed();
     log::debug("columns were shared out anew");
@@ -58,9 +58,9 @@ void Pile::balance() {
   neighborhood.rebuild(store);
 }
 
-std::int64_t Pile::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.work().particle_steps); }
+std::int64_t Bed::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.work().particle_steps); }
 
-std::vector<std::int32_t> Pile::layers() const {
+std::vector<std::int32_t> Bed::layers() const {
   std::vector<std::int32_t> layer;
   layer.reserve(static_cast<std::size_t>(store.owned()));
   for (const GlobalId id : store.ids().first(static_cast<std::size_t>(store.owned()))) {
@@ -69,9 +69,9 @@ std::vector<std::int32_t> Pile::layers() const {
   return layer;
 }
 
-std::size_t Pile::bytes() const noexcept { return store.bytes() + neighborhood.bytes() + stepper.bytes(); }
+std::size_t Bed::bytes() const noexcept { return store.bytes() + neighborhood.bytes() + stepper.bytes(); }
 
-double Pile::bytes_per_particle() const {
+double Bed::bytes_per_particle() const {
   return comm.max(static_cast<double>(bytes()) /
                   static_cast<double>(std::max<LocalIndex>(1, store.owned() + neighborhood.frozen().owned())));
 }

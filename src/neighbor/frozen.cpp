@@ -1,4 +1,4 @@
-#include "neighbor/still.hpp"
+#include "neighbor/frozen.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -25,7 +25,7 @@ void stop(const particles::Layout& layout, double* record) {
 
 }  // namespace
 
-void Still::take(particles::Store& from, GlobalId below) {
+void Frozen::take(particles::Store& from, GlobalId below) {
   store_.set_ghosts(0);
   std::vector<LocalIndex> moving;
   for (LocalIndex i = 0; i < from.owned(); ++i) {
@@ -41,7 +41,7 @@ void Still::take(particles::Store& from, GlobalId below) {
   in_use_ = true;
 }
 
-void Still::give_back(particles::Store& to) {
+void Frozen::give_back(particles::Store& to) {
   to.set_ghosts(0);
   for (LocalIndex i = 0; i < store_.owned(); ++i) {
     to.add_record(store_.ids()[static_cast<std::size_t>(i)], store_.record(i));
@@ -51,7 +51,7 @@ void Still::give_back(particles::Store& to) {
   in_use_ = false;
 }
 
-void Still::arrange(const scene::Ownership& ownership, const LocalColumns& columns, double range) {
+void Frozen::arrange(const scene::Ownership& ownership, const LocalColumns& columns, double range) {
   store_.set_ghosts(0);
   sort(ownership, columns);
   const std::vector<comm::Parcel> arrived =
@@ -59,7 +59,7 @@ void Still::arrange(const scene::Ownership& ownership, const LocalColumns& colum
   add_copies(arrived, ownership, columns);
 }
 
-void Still::sort(const scene::Ownership& ownership, const LocalColumns& columns) {
+void Frozen::sort(const scene::Ownership& ownership, const LocalColumns& columns) {
   std::vector<Place> places;
   places.reserve(static_cast<std::size_t>(store_.owned()));
   start_.assign(static_cast<std::size_t>(columns.total()) + 1, 0);
@@ -74,7 +74,7 @@ void Still::sort(const scene::Ownership& ownership, const LocalColumns& columns)
   store_.permute(order);
 }
 
-std::vector<comm::Parcel> Still::copies(const scene::Ownership& ownership, const LocalColumns& columns,
+std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, const LocalColumns& columns,
                                         double range) const {
   std::vector<comm::Parcel> parcels;
   const std::size_t record = store_.layout().record_bytes();
@@ -96,7 +96,7 @@ std::vector<comm::Parcel> Still::copies(const scene::Ownership& ownership, const
   return parcels;
 }
 
-void Still::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ownership& ownership,
+void Frozen::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ownership& ownership,
                        const LocalColumns& columns) {
   particles::Store arrived(store_.layout());
   std::vector<double> body(static_cast<std::size_t>(store_.layout().stride));
@@ -127,7 +127,7 @@ void Still::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ow
   while (column < static_cast<std::size_t>(columns.total())) start_[++column] = slot;
 }
 
-void Still::append(const std::vector<double>& lowest, particles::Store& moving, Cells& cells) const {
+void Frozen::append(const std::vector<double>& lowest, particles::Store& moving, Cells& cells) const {
   const auto levels = static_cast<std::size_t>(cells.levels);
   cells.start.assign(lowest.size() * levels + 1, moving.total());
   std::vector<LocalIndex> from(lowest.size());
