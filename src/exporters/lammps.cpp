@@ -7,20 +7,23 @@
 namespace packmpi::exporters::lammps {
 namespace {
 
-/// "hertz/material ...", for pairs or walls. A wall's modulus counts twice in LAMMPS: as the particle's and as its own.
-std::string contact(const Specimen& s, double modulus, double friction) {
+/// "hertz ...", for pairs or walls, by its stiffness: of a wall's modulus LAMMPS makes another E* than of a pair's.
+/// `share` of a particle's own E / (1 - nu^2) is E*: 1/2 against its like, 1 against what is rigid.
+std::string contact(const Specimen& s, double share, double friction) {
   const input::Input& in = s.scene.in;
+  const double nu = in.particles.poisson_ratio;
+  const double stiffness = 4.0 / 3.0 * share * in.particles.youngs_modulus / (1.0 - nu * nu);
   // Slip is damped by x normal dampings up to Coulomb's limit; x makes that damping the same for every xi.
   constexpr double least = 1e-3;
   const double xi = std::max(in.contact.damping_ratio, least);
-  return fmt::format("hertz/material {} {} {} tangential linear_nohistory {} {} damping tsuji", modulus,
-                     tsuji_restitution(xi), in.particles.poisson_ratio, 1.0 / xi, friction);
+  return fmt::format("hertz {} {} tangential linear_nohistory {} {} damping tsuji{}", stiffness, tsuji_restitution(xi),
+                     1.0 / xi, friction, in.contact.tension_cutoff ? " limit_damping" : "");
 }
 
 std::string walls(const Specimen& s) {
   const input::Input& in = s.scene.in;
-  const double factor = in.contact.wall == input::WallStiffness::rigid ? 2.0 : 1.0;
-  const std::string law = contact(s, factor * in.particles.youngs_modulus, in.contact.wall_friction);
+  const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
+  const std::string law = contact(s, share, in.contact.wall_friction);
   std::string text;
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
     if (s.periodic(axis)) continue;
@@ -53,15 +56,16 @@ std::string in_file(const Specimen& s) {
       "read_data       ${{data}}\n\n"
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n"
       "pair_style      granular\npair_coeff      * * {}\n",
-      s.file, s.flat() ? 2 : 3, boundary_words(s), s.scene.skin,
-      contact(s, in.particles.youngs_modulus, in.contact.friction));
+      s.file, s.flat() ? 2 : 3, boundary_words(s), s.scene.skin, contact(s, 0.5, in.contact.friction));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
-  text += drag(s) + walls(s);
+  text += drag(s);
   text += fmt::format("fix             move all {}\n", s.rotation ? "nve/sphere" : "nve");
-  if (s.flat()) text += "fix             plane all enforce2d\n";
+  constexpr const char* report =
+      "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
+      "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n";
   text += fmt::format(
-      "timestep        {}\n\n"
+      "timestep        {0}\n\n"
       "compute         diameter all property/atom diameter\n"
       "variable        volume atom PI/6*c_diameter*c_diameter*c_diameter\n"
       "compute         volume all reduce sum v_volume\n"
@@ -71,13 +75,11 @@ std::string in_file(const Specimen& s) {
       "variable        force_now equal c_strongest\n"
       "thermo_style    custom step atoms ke c_volume c_strongest\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
-      "run             0\n"
-      "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
-      "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n"
-      "run             ${{steps}}\n"
-      "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
-      "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n",
-      s.scene.time_step);
+      "run             0\n{1}\n"
+      "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
+      "anew before another one\n"
+      "{2}{3}run             ${{steps}}\n{1}",
+      s.scene.time_step, report, walls(s), s.flat() ? "fix             plane all enforce2d\n" : "");
   return text;
 }
 

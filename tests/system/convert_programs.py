@@ -41,11 +41,21 @@ def run(*command, folder, codes=(0,)):
     return done.stdout
 
 
+def floor_force(height, radius, upward, density):
+    """What a rigid floor carries by the law of the scenes: Hertz, E 1e8, nu 0.25, damping ratio 0.1, no pull."""
+    modulus = 1e8 / (1.0 - 0.25 ** 2)
+    depth = np.maximum(radius - height, 0.0)
+    stiffness = np.sqrt(radius * depth) * modulus
+    damping = 2.0 * 0.1 * np.sqrt(2.0 * stiffness * density * 4.0 / 3.0 * math.pi * radius ** 3)
+    return math.fsum(np.maximum(4.0 / 3.0 * stiffness * depth - damping * upward, 0.0))
+
+
 class Pack:
     """Its own numbers."""
 
     def __init__(self, path, density=1000.0):
         with h5py.File(path) as file:
+            vertical = file["summary"].attrs["dimension"] - 1
             radius, x = file["particles/radius"][:], file["particles/position"][:]
             self.count, self.volume = len(radius), math.fsum(4.0 / 3.0 * math.pi * radius ** 3)
             self.mass = density * self.volume
@@ -53,6 +63,7 @@ class Pack:
             branch = x[pair[:, 1]] - x[pair[:, 0]]
             normal = branch / np.linalg.norm(branch, axis=1)[:, None]
             self.largest = float((-(force * normal).sum(axis=1)).max())
+            self.floor = floor_force(x[:, vertical], radius, file["particles/velocity"][:, vertical], density)
 
 
 def check(program, words, pack, tolerances):
@@ -69,6 +80,18 @@ def check(program, words, pack, tolerances):
         near(f"{program}, largest contact force", float(said[0][3]), pack.largest, tolerances)
     if not 0.0 < float(said[1][3]) < 10.0 * pack.largest:
         problems.append(f"{program}: the pack burst or fell apart: {said[1][3]} N after the steps")
+
+
+def check_floor(name, pack, here):
+    """The floor carries in LAMMPS what it carries in the pack: the force on all without weight, drag and sides."""
+    text = (here / f"{name}.lammps.in").read_text()
+    vertical = "y" if name == "paper_5_1" else "z"
+    text = re.sub(r"(?m)^fix +(gravity|drag|wall_.) .*\n", "", text)
+    measure = f"variable push atom f{vertical}\ncompute push all reduce sum v_push\nvariable push_now equal c_push\nthermo_style custom step c_volume c_strongest c_push\n"
+    text = text.replace("run             ${steps}", measure + "run ${steps}") + 'print "FLOOR $(v_push_now:%.17g)"\n'
+    (here / "floor.in").write_text(text)
+    run("lmp", "-in", "floor.in", "-var", "steps", "0", "-screen", "none", "-log", "floor.log", folder=here)
+    near(f"LAMMPS, force on the floor, {name}", float(re.findall(r"(?m)^FLOOR (\S+)", (here / "floor.log").read_text())[-1]), pack.floor, 1e-9)
 
 
 def vtk_points(path, reader):
@@ -94,6 +117,7 @@ def main():
         if shutil.which("lmp"):
             run("lmp", "-in", f"{name}.lammps.in", "-screen", "none", "-log", "lammps.log", folder=here)
             check(f"LAMMPS, {name}", (here / "lammps.log").read_text(), pack, 1e-9)   # the same law
+            check_floor(name, pack, here)
             tried.append("LAMMPS")
         if shutil.which("liggghts"):
             check(f"LIGGGHTS, {name}", run("liggghts", "-in", f"{name}.liggghts.in", folder=here), pack, None)
