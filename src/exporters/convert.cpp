@@ -83,7 +83,7 @@ void check_copies(const ConvertRequest& request, const geometry::Box& box) {
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
 scene::Scene scene_of(const pack::PackFile& file) {
   try {
-    return scene::build(input::parse(file.text("/provenance", "effective_input"), "the scene in it", {}));
+    return scene::build(input::parse(file.scene(), "the scene in it", {}));
   } catch (const Error& error) {
     throw Error(ExitCode::io_failure, error.what());
   }

@@ -12,7 +12,8 @@
 
 namespace packmpi::pack {
 
-inline constexpr std::int64_t checkpoint_version = 2;
+inline constexpr std::int64_t checkpoint_version = 3;
+inline constexpr std::int64_t oldest_checkpoint_version = 2;  ///< that can be read
 
 /// What a run does next.
 enum class Phase {
@@ -60,7 +61,8 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
 /// Error(io_failure).
 [[nodiscard]] std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state);
 
-/// The state in the checkpoint PATH, its digest verified; the particles are not looked at. Rank-local.
+/// The state in the checkpoint PATH, its digest verified; the particles are not looked at. What a former version wrote
+/// comes in the names of today. Rank-local.
 /// Throws Error(bad_checkpoint): "PATH: what is wrong".
 [[nodiscard]] RunState read_state(const std::string& path);
 

@@ -10,6 +10,7 @@
 #include "disk/scatter.hpp"
 #include "disk/seal.hpp"
 #include "pack/checkpoint.hpp"
+#include "pack/former_names.hpp"
 #include "pack/run_state.hpp"
 
 namespace packmpi::pack {
@@ -62,7 +63,12 @@ disk::h5::Handle open_file(const std::string& path) {
     refuse_checkpoint("it is not a checkpoint of packmpi");
   }
   const auto version = read_attribute<std::int64_t>(file.get(), "format_version");
-  if (version != checkpoint_version) refuse_checkpoint(fmt::format("format version {} is not known here", version));
+  if (version < oldest_checkpoint_version || version > checkpoint_version) {
+    refuse_checkpoint(
+        fmt::format("it has format version {}, and this packmpi reads {} to {}: go on with the packmpi "
+                    "that wrote it, or begin anew",
+                    version, oldest_checkpoint_version, checkpoint_version));
+  }
   return file;
 }
 
@@ -72,8 +78,9 @@ RunState state_in(hid_t file) {
   if (hash_of(text + scene) != read_attribute<std::uint64_t>(file, "text_digest")) {
     refuse_checkpoint("the digest of its state and scene is wrong: the file is damaged");
   }
-  RunState state = state_of(text);
-  state.effective_input = scene;
+  const bool former = read_attribute<std::int64_t>(file, "format_version") < checkpoint_version;
+  RunState state = state_of(former ? state_in_present_names(text) : text);
+  state.effective_input = former ? scene_in_present_names(scene) : scene;
   const bool valid = state.count >= 0 && state.steps >= 0 && state.done >= 0 && state.dimension >= 2 &&
                      state.dimension <= 3 && std::ranges::is_sorted(state.first_ids) &&
                      state.first_ids.size() == state.layers.size() + (state.phase == Phase::settling ? 1 : 0);

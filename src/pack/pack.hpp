@@ -13,6 +13,9 @@
 
 namespace packmpi::pack {
 
+inline constexpr std::int64_t pack_version = 2;
+inline constexpr std::int64_t oldest_pack_version = 1;  ///< that can be read
+
 /// One contact for /contacts.
 using ContactRow = observe::ContactForce;
 
@@ -55,7 +58,7 @@ void check_pack(const comm::Comm& comm, const std::string& path);
 /// One rank's share of a pack, and the scene it was made from.
 struct PackSlice {
   PackRows rows;      ///< [rank N / ranks, (rank + 1) N / ranks)
-  std::string scene;  ///< the effective input, TOML
+  std::string scene;  ///< the effective input, TOML, in the keys of today
 };
 /// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "pack/former_names.hpp"
 
 namespace packmpi::pack {
 namespace {
@@ -70,8 +71,11 @@ std::vector<Row> read_rows(hid_t file, const std::string& path, const Range& ran
 
 PackFile::PackFile(const std::string& path)
     : seal_(disk::check_frame(path)), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it") {
-  if (const auto version = read_number<std::int64_t>(file_.get(), "/", "format_version"); version != 1) {
-    throw Error(ExitCode::io_failure, fmt::format("format version {} is not known here", version));
+  version_ = read_number<std::int64_t>(file_.get(), "/", "format_version");
+  if (version_ < oldest_pack_version || version_ > pack_version) {
+    throw Error(ExitCode::io_failure,
+                fmt::format("it has format version {}, and this packmpi reads {} to {}: use the packmpi that wrote it",
+                            version_, oldest_pack_version, pack_version));
   }
   dimension_ = static_cast<int>(read_number<std::int64_t>(file_.get(), "/summary", "dimension"));
   const std::vector<hsize_t> sizes = extent(disk::h5::open_dataset(file_.get(), "/particles/id").get());
@@ -92,6 +96,11 @@ PackRows PackFile::rows(std::int64_t begin, std::int64_t count) const {
   pack.layer = read_rows<std::int32_t, std::int32_t>(file, "/particles/layer", range);
   pack.contacts = read_rows<std::int32_t, std::int32_t>(file, "/particles/contacts", range);
   return pack;
+}
+
+std::string PackFile::scene() const {
+  const std::string scene = text("/provenance", "effective_input");
+  return version_ < pack_version ? scene_in_present_names(scene) : scene;
 }
 
 std::string PackFile::text(const char* object, const char* attribute) const {

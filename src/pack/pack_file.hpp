@@ -23,12 +23,14 @@ class PackFile {
   [[nodiscard]] bool rotation() const noexcept { return rotation_; }    ///< spins are there
   /// Rows [begin, begin + count) of all particle datasets, whose shapes are checked. Cost: O(count).
   [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
+  [[nodiscard]] std::string scene() const;  ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;
   [[nodiscard]] double number(const char* object, const char* attribute) const;
 
  private:
   disk::Seal seal_;
   disk::h5::Handle file_;
+  std::int64_t version_ = 0;
   int dimension_ = 3;
   std::int64_t count_ = 0;
   bool rotation_ = false;

@@ -165,7 +165,7 @@ std::vector<disk::h5::Column> plan_columns(const PackBlock& block) {
 void write_frame(hid_t file, const PackBlock& block, const std::vector<disk::h5::Column>& plan,
                  const report::RunRecord& record) {
   disk::h5::set_attribute(file, "format", std::string("packmpi-pack"));
-  disk::h5::set_attribute(file, "format_version", std::int64_t{1});
+  disk::h5::set_attribute(file, "format_version", pack_version);
   (void)disk::h5::create_group(file, "/particles");
   if (block.has_contacts) (void)disk::h5::create_group(file, "/contacts");
   for (const disk::h5::Column& column : plan) disk::h5::create_dataset(file, column);

@@ -42,7 +42,7 @@ Json order(const observe::Order& o, int dimension) {
 std::string to_json(const observe::Analysis& a, int dimension) {
   Json root;
   root["format"] = "packmpi-analysis";
-  root["format_version"] = 1;
+  root["format_version"] = 2;
   root["particles"] = a.particles;
   root["mean_diameter"] = a.mean_diameter;
   root["sizes"] = to_json(a.sizes);

@@ -40,7 +40,7 @@ std::string memory(std::int64_t bytes) { return text::bytes(static_cast<std::uin
 std::string to_json(const Estimate& e) {
   Json root;
   root["format"] = "packmpi-estimate";
-  root["format_version"] = 1;
+  root["format_version"] = 2;
   root["scene_file"] = e.scene_file;
   root["found"] = e.found;
   root["size"] = e.size;

@@ -63,7 +63,7 @@ std::string to_json(const RunRecord& record) {
   for (const char* diameter : {"d10", "d30", "d50", "d60", "d90"}) units[diameter] = "m";
   Json root;
   root["format"] = "packmpi-summary";
-  root["format_version"] = 1;
+  root["format_version"] = 2;
   root["target"] = to_object(target_fields(record));
   root["achieved"] = to_object(achieved_fields(record));
   root["sizes"] = to_json(record.sizes);

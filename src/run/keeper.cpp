@@ -154,7 +154,7 @@ void Keeper::write() {
   pack::write_checkpoint(bed_.comm, files_.slots[slot_], stores, state);
   disk::write_text(
       bed_.comm, files_.manifest,
-      fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 1, \"newest\": \"{}\", "
+      fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 2, \"newest\": \"{}\", "
                   "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",
                   "AB"[slot_], serial_, bed_.first_ids.size(), phase_name(stand_.phase), bed_.steps, bed_.count));
   const double took = bed_.comm.max(watch.seconds());

@@ -7,15 +7,28 @@
 #include <vector>
 
 #include "base/log.hpp"
+#include "input/read.hpp"
 #include "packmpi/version.hpp"
 #include "run/scene_change.hpp"
 
 namespace packmpi::run {
 namespace {
 
+/// The checkpoint's scene as it is read now: keys that are new since then have their defaults. Local.
+std::string scene_now(const pack::RunState& state, const std::string& path) {
+  try {
+    return input::parse(state.effective_input, "the scene in it", {}).effective;
+  } catch (const Error& error) {
+    throw Error(ExitCode::bad_checkpoint,
+                fmt::format("checkpoint {}: {}; go on with the packmpi that wrote it, or begin anew with --force and "
+                            "without --restart",
+                            path, error.what()));
+  }
+}
+
 /// Throws on a scene that is not the checkpoint's. Local.
 void check_scene(const pack::RunState& state, const scene::Scene& scene, const std::string& path) {
-  const std::string changes = forbidden_changes(state.effective_input, scene.in.effective);
+  const std::string changes = forbidden_changes(scene_now(state, path), scene.in.effective);
   if (changes.empty()) return;
   throw Error(ExitCode::bad_checkpoint,
               fmt::format("checkpoint {} is of another scene: {}; undo the change, or begin anew with --force and "

@@ -208,7 +208,7 @@ TEST_F(Pack, SaysWhatItIs) {
   if (comm_.rank() != 0) return;
   const File file(path);
   EXPECT_EQ(file.attribute("/", "format"), "packmpi-pack");
-  EXPECT_EQ(file.attribute("/", "format_version"), raw(std::int64_t{1}));
+  EXPECT_EQ(file.attribute("/", "format_version"), raw(std::int64_t{2}));
   EXPECT_EQ(file.attribute("/particles/position", "unit"), "m");
   EXPECT_EQ(file.attribute("/particles/spin", "unit"), "rad/s");
   EXPECT_EQ(file.attribute("/contacts/force", "unit"), "N");
