@@ -14,8 +14,11 @@
 namespace packmpi::run {
 namespace {
 
+bool is_from_this_program(const pack::RunState& state) { return state.version == version() && state.git == git_id(); }
+
 /// The checkpoint's scene as it is read now: keys that are new since then have their defaults. Local.
 std::string scene_now(const pack::RunState& state, const std::string& path) {
+  if (is_from_this_program(state)) return state.effective_input;
   try {
     return input::parse(state.effective_input, "the scene in it", {}).effective;
   } catch (const Error& error) {
@@ -153,7 +156,7 @@ Origin resume(const Files& files, const Options& options, Bed& bed, Stand& stand
     return {};
   }
   const auto [state, path] = read_first(paths, passed_over, bed);
-  if (state.version != version() || state.git != git_id()) {
+  if (!is_from_this_program(state)) {
     log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
                           state.version, state.git, version(), git_id()));
   }
