@@ -7,9 +7,9 @@
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
 #   --report  also what --render brings, and Chromium, in which the test of scripts/report.py reads its page
 #   --site    also MkDocs, for the documentation as a site
-#   --checks  also clang-tidy and clang-format, for scripts/check.sh
-#   --fuzz    also clang with libFuzzer, for scripts/fuzz.sh
-#   --valgrind also valgrind, for scripts/valgrind.sh
+#   --checks  also clang-tidy and clang-format, for scripts/dev/check.sh
+#   --fuzz    also clang with libFuzzer, for scripts/dev/fuzz.sh
+#   --valgrind also valgrind, for scripts/dev/valgrind.sh
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libeigen3-dev

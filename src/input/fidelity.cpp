@@ -129,7 +129,7 @@ Protocol in_space(Input in, const Spatial& rule) {
   return p;
 }
 
-/// All measured and chosen with scripts/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the rotation:
+/// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the rotation:
 /// with it particles roll past each other as well.
 Protocol draft(const Input& in) {
   if (flat(in))

@@ -4,7 +4,7 @@
 // (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways
 // between walls to about the asked number, and advanced. Prints particle-steps a second and core, median and spread
 // over the runs, and bytes a particle on the worst rank. With a data file (one rank), the bed is also written there as
-// LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/compare.py). `sd` is the standard
+// LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/study/compare.py). `sd` is the standard
 // deviation of Gaussian radii about 0.02 m, as a share of it, cut off at three of them (0: equal radii).
 #include <fmt/core.h>
 #include <mpi.h>

@@ -1,5 +1,5 @@
 // Exactly solvable problems against the time step: relative errors and observed orders, as Markdown tables, and what
-// step the law itself can bear. scripts/exact_problems.py writes them into doc/accuracy.md.
+// step the law itself can bear. scripts/study/exact_problems.py writes them into doc/accuracy.md.
 #include <fmt/core.h>
 
 #include <cmath>

@@ -2,7 +2,7 @@
 # Holds src/ and include/ of ROOT to the order of the modules and to the one module that may touch each library.
 # With EXPECTED, the violations found must be exactly the lines of that file (the test of this test).
 cmake_minimum_required(VERSION 3.25)
-file(STRINGS ${ROOT}/scripts/modules.txt modules REGEX "^[a-z]")
+file(STRINGS ${ROOT}/src/modules.txt modules REGEX "^[a-z]")
 
 # A third-party header, as it stands between the include's brackets, and the modules that may include it.
 set(libraries
@@ -130,7 +130,7 @@ if(EXPECTED)
   endif()
 elseif(found)
   message("${text}")
-  message(FATAL_ERROR "the order of the modules (scripts/modules.txt) is broken")
+  message(FATAL_ERROR "the order of the modules (src/modules.txt) is broken")
 elseif(count LESS 10)
   message(FATAL_ERROR "only ${count} files under ${ROOT}: nothing was checked")
 endif()

@@ -76,7 +76,7 @@ input::Input scene_of(const Kind& kind) {
   return in;
 }
 
-/// Restarts, and packs compared after them, for scripts/faults.sh.
+/// Restarts, and packs compared after them, for scripts/dev/faults.sh.
 struct Counts : ::testing::Environment {
   int restarts = 0, compared = 0, same = 0;
   void TearDown() override {

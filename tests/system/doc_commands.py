@@ -24,7 +24,7 @@ COMMANDS = {
     "mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 2000 || test $? = 75":
         ("mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 150 " + SMALL + " || test $? = 75"),
     "mpirun -n 3 build/packmpi input/quickstart.toml -o night --restart auto": SMALL,
-    "scripts/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made",
+    "scripts/study/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made",
     "packmpi estimate input/quickstart.toml": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --floor 0.6,open --no-probe --json": "",
@@ -33,7 +33,7 @@ COMMANDS = {
     "scripts/report.py quickstart.hdf": "--size 150",
     "packmpi convert quickstart.hdf --to lammps": "",
     "lmp -in quickstart.lammps.in": "-var steps 2 -screen none",
-    "scripts/figures.py": "--only 4 --size 200 --images made --set layers.duration=0.01",
+    "scripts/study/figures.py": "--only 4 --size 200 --images made --set layers.duration=0.01",
 }
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
 NEEDS = {"render.py": "vtk", "lmp ": "lmp"}       # passed over without it
@@ -87,7 +87,7 @@ def run(command, extra, folder):
     text = extra if extra.startswith("mpirun") else f"{command} {extra}"
     done = subprocess.run(text, shell=True, cwd=folder, env=environment, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    allowed = (0, TARGETS_MISSED) if command == "scripts/reproduce.py" else (0,)
+    allowed = (0, TARGETS_MISSED) if command == "scripts/study/reproduce.py" else (0,)
     print(f"$ {text}\n{done.stdout[-1500:]}")
     if done.returncode not in allowed:
         problems.append(f"exit code {done.returncode}: {command}")

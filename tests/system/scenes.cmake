@@ -23,8 +23,8 @@ add_test(NAME system/exit_codes.np2 COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/exit_cod
   ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 $<TARGET_FILE:packmpi_program>)
 set_tests_properties(system/exit_codes.np2 PROPERTIES PROCESSORS 2 TIMEOUT 180
   ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS "system;np2")
-if(PACKMPI_SYSTEM_PYTHON AND NOT PACKMPI_SANITIZE)   # the short version of scripts/faults.py
-  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/faults.py -n 1
+if(PACKMPI_SYSTEM_PYTHON AND NOT PACKMPI_SANITIZE)   # the short version of scripts/dev/faults.py
+  add_test(NAME system/faults COMMAND ${PACKMPI_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/dev/faults.py -n 1
     --build ${PROJECT_BINARY_DIR})
   set_tests_properties(system/faults PROPERTIES PROCESSORS 2 TIMEOUT 240 SKIP_RETURN_CODE 77
     ENVIRONMENT "${PACKMPI_MPI_ENVIRONMENT}" LABELS system)

@@ -2,7 +2,7 @@
 """What a run costs on many ranks: counts what 1 to 64 ranks do and send on blocks that grow with them, fits the cost of what was
 counted on 1 and 2 ranks, and writes both and a prediction for clusters into doc/scaling.md.
 
-usage: scripts/scaling.py [--quick] [--ranks 64] [--only counts timing] [--latency s] [--node-bandwidth B/s] ...
+usage: scripts/study/scaling.py [--quick] [--ranks 64] [--only counts timing] [--latency s] [--node-bandwidth B/s] ...
 
 Counts are exact and do not depend on how busy the machine is: more ranks than cores are no matter. Costs are CPU seconds.
 Results are kept in results/scaling and not made anew while the program and the settings are the same. The exit code is 1 if a
@@ -463,7 +463,7 @@ def parse():
 
 
 def report(options, runs, complaints, growth):
-    text = ["### Counted", "", f"{measuring.made_by('scripts/scaling.py')}; counted by the program of {runs['slab', 1][0].git}. Load when it ended: {os.getloadavg()[0]:.1f}.", "",
+    text = ["### Counted", "", f"{measuring.made_by('scripts/study/scaling.py')}; counted by the program of {runs['slab', 1][0].git}. Load when it ended: {os.getloadavg()[0]:.1f}.", "",
             *ghost_table(runs), "", *traffic_table(runs), "", *growth_words(growth), "",
             "Checks: " + ("all hold." if not complaints else "; ".join(complaints) + ".")]
     if "timing" not in options.only:

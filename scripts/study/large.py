@@ -2,10 +2,10 @@
 """Makes the large packs and writes their figures into doc/performance.md: input/million.toml with its preset
 and with the paper's, and input/tall.toml to growing heights.
 
-usage: scripts/large.py [--ranks 2] [--scale 1.0] [--only million paper tall] [--picture]
+usage: scripts/study/large.py [--ranks 2] [--scale 1.0] [--only million paper tall] [--picture]
 
 --scale s: the million's lateral extents times s, to try it (0.32: 1e5 spheres). Results are kept in results/large and not
-made anew while the program and the settings are the same. --picture draws the million (scripts/render.py).
+made anew while the program and the settings are the same. --picture draws the million (packmpi render).
 """
 import argparse
 import json
@@ -114,11 +114,11 @@ def main():
     options = parse()
     found = {name: make(options, name, scene, settings, ranks) for name, scene, settings, ranks in cases(options)}
     scale = "" if options.scale == 1.0 else f" --scale {options.scale:g}"
-    text = "\n".join([f"{measuring.made_by('scripts/large.py' + scale)}.", "", *million_table(found), "", *tall_table(found)])
+    text = "\n".join([f"{measuring.made_by('scripts/study/large.py' + scale)}.", "", *million_table(found), "", *tall_table(found)])
     print(text)
     measuring.write_block(options.doc, "large", text.rstrip())
     if options.picture and "million" in found:
-        subprocess.run([measuring.ROOT / "scripts/render.py", options.results / "million/million.hdf", "-o",
+        subprocess.run([options.program, "render", options.results / "million/million.hdf", "-o",
                         measuring.ROOT / "doc/images/million.png"], check=True)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Looks for the fcc lattice that the paper saw inside example 5.3 made of spheres half as large: a table in doc/analyze.md.
 
-usage: scripts/fcc.py [--radii 0.02 0.01]
+usage: scripts/study/fcc.py [--radii 0.02 0.01]
 
 Makes example 5.3 with each radius, rotation on and off, by the paper's protocol, one run at a time on one rank, and has
 `packmpi analyze` look at the bulk. Packs stay in results/fcc and are not made again: stop it at any time, start it
@@ -52,7 +52,7 @@ def main():
     options = parser.parse_args()
     options.program, options.results = options.program.resolve(), options.results.resolve()
     rows = [row(radius, rotation, *make(options, radius, rotation)) for radius in options.radii for rotation in ("true", "false")]
-    text = "\n".join([f"{measuring.made_by('scripts/fcc.py')}.", "",
+    text = "\n".join([f"{measuring.made_by('scripts/study/fcc.py')}.", "",
                       "| radius | rotation | spheres | phi_bulk | of them in the bulk | fcc | hcp | q_6, mean | g at 1.41 d | g, highest at 1.65 to 2.05 d |",
                       "|---|---|---|---|---|---|---|---|---|---|", *rows])
     print(text)

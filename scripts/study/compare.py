@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """packmpi, LAMMPS and LIGGGHTS on the same scenes, in turn, in the same minutes, on the same core.
 
-  scripts/compare.sh [--runs 3] [--seeds 2] [--beds 107000 964000 | --no-beds] [--no-brick] [--quick] [--core 0]
+  scripts/study/compare.sh [--runs 3] [--seeds 2] [--beds 107000 964000 | --no-beds] [--no-brick] [--quick] [--core 0]
 
 Beds: settled beds of the paper's spheres between walls (rotation on, time step 1e-4 s), written by
 tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
@@ -23,7 +23,7 @@ import numpy as np
 
 import measuring
 
-PEERS = measuring.ROOT / "scripts/peers"
+PEERS = measuring.ROOT / "scripts/study/peers"
 PAPER, FAST = "packmpi, `\"paper\"`", "packmpi, `\"balanced\"`"   # by fidelity
 RADIUS, HEIGHT = 0.02, 0.5   # [m] of example 5.3
 
@@ -167,7 +167,7 @@ def version(words, pattern):
 def report(options, rows, found):
     lammps = version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)")
     liggghts = version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")
-    out = [f"{measuring.made_by('scripts/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. LAMMPS {lammps}, "
+    out = [f"{measuring.made_by('scripts/study/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. LAMMPS {lammps}, "
            f"LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, sliding friction without history, rotation. "
            f"Beds: {options.runs} runs of each, bricks: {options.seeds} seeds of each. Median (least to most); ratios are taken run by run.", ""]
     if rows:

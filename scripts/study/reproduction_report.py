@@ -1,4 +1,4 @@
-"""The report of scripts/reproduce.py: tables, criteria and a plot, from the rows of doc/data/reproduction.csv."""
+"""The report of scripts/study/reproduce.py: tables, criteria and a plot, from the rows of doc/data/reproduction.csv."""
 import csv
 import math
 
@@ -162,7 +162,7 @@ def text_of(cells, rows):
     judged = criteria(cells)
     verdicts = [[what, ours, wanted, "yes" if met else "**no**"] for what, ours, wanted, met in judged]
     lines = ["# How well the paper's tables are reproduced", "",
-             "Written by `scripts/reproduce.py`, which makes all packs and this page. Do not edit.", "",
+             "Written by `scripts/study/reproduce.py`, which makes all packs and this page. Do not edit.", "",
              *protocol(rows), "", "![solid fraction of every pack](images/reproduction.png)", "", "## Solid fraction", "",
              *density_table(cells), "", "## Criteria", "", *table(["criterion", "here", "wanted", "met"], verdicts), "",
              "## State of the packs", "", *state_table(cells), "",

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # The readers of scenes, and of checkpoints and packs, given what nobody would write: both fuzzers of tests/fuzz side by
 # side, a core each. What is new in their corpora stays in BUILD/corpus for the next time.
-# usage: [BUILD=folder] scripts/fuzz.sh [seconds]     (60; folder build-fuzz)
+# usage: [BUILD=folder] scripts/dev/fuzz.sh [seconds]     (60; folder build-fuzz)
 # Exit code 1 if anything was found: the bytes are in BUILD/findings, what happened in BUILD/NAME.log, and
 # BUILD/fuzz_NAME FILE does it again.
 set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
-tests=$here/../tests
-build=${BUILD:-$here/../build-fuzz}
+root=$(cd "$(dirname "$0")/../.." && pwd)
+tests=$root/tests
+build=${BUILD:-$root/build-fuzz}
 seconds=${1:-60}
-source "$here/mpi_env.sh"
-"$here/setup.sh" --fuzz
-[[ -f $build/build.ninja ]] || cmake -S "$here/.." -B "$build" --preset fuzz --log-level=WARNING >/dev/null
-BUILD=$build "$here/build.sh" packmpi_fuzzers
+source "$root/scripts/mpi_env.sh"
+"$root/scripts/setup.sh" --fuzz
+[[ -f $build/build.ninja ]] || cmake -S "$root" -B "$build" --preset fuzz --log-level=WARNING >/dev/null
+BUILD=$build "$root/scripts/build.sh" packmpi_fuzzers
 
 # The checkpoint fuzzer writes a file for every trial: to memory, if there is a place.
 memory=/tmp
@@ -20,7 +20,7 @@ memory=/tmp
 work=$(mktemp -d "$memory/packmpi-fuzz-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/findings"
-grep -oh '"[A-Za-z_][A-Za-z0-9_.]*"' "$here"/../src/input/{keys,key_words,words,units}.* | sort -u >"$build/input.dict"
+grep -oh '"[A-Za-z_][A-Za-z0-9_.]*"' "$root"/src/input/{keys,key_words,words,units}.* | sort -u >"$build/input.dict"
 
 # The timeout is for what waits for ever; the fuzzers themselves allow each trial a second of the processor.
 fuzz() {   # name, options and folders of seeds
@@ -34,7 +34,7 @@ fuzz() {   # name, options and folders of seeds
     printf "fuzz: %s: %d executions in %.0f s, %s\n", name, runs, e - s, code == 0 ? "nothing found" : "FOUND something" }'
   [[ $code -eq 0 ]] || { grep -E '^fuzz: |^SUMMARY|ERROR|Test unit' "$log" | sed "s|^|fuzz: $name: |" >&2; return 1; }
 }
-fuzz input -max_len=4096 -dict="$build/input.dict" "$here/../input" "$tests/input/bad" &
+fuzz input -max_len=4096 -dict="$build/input.dict" "$root/input" "$tests/input/bad" &
 input=$!
 # Leaks of MPI, which lives as long as the fuzzer, are no findings; the unit tests look for ours.
 ASAN_OPTIONS=detect_leaks=0 fuzz checkpoint -max_len=256 -len_control=0 -detect_leaks=0 &

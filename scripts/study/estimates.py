@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes packs and compares them with what `packmpi estimate` said, after its probe: the table of doc/estimate.md.
 
-usage: scripts/estimates.py [--cases WORD ...]       (only cases whose name has one of the words)
+usage: scripts/study/estimates.py [--cases WORD ...]       (only cases whose name has one of the words)
 
 Runs build/packmpi, one rank, one pack after the other, in results/estimates: friction, rotation, walls and size
 distributions, in 2D and 3D. Three to ten minutes of one core.
@@ -92,7 +92,7 @@ def main():
     wanted = options.parse_args().cases
     FOLDER.mkdir(parents=True, exist_ok=True)
     rows = [row(*case) for case in cases() if any(word in case[0] for word in wanted)]
-    head = (f"Made by `scripts/estimates.py` on {datetime.date.today()}; one pack a line, seed 1.\n\n"
+    head = (f"Made by `scripts/study/estimates.py` on {datetime.date.today()}; one pack a line, seed 1.\n\n"
             "| scene | fraction, estimated | got | particles, estimated | got | pack, bytes, estimated | got | "
             "time, s, estimated | got |\n|---|---|---|---|---|---|---|---|---|\n")
     if wanted != [""]:

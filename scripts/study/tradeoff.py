@@ -2,7 +2,7 @@
 """What each way to a cheaper pack changes in it, one knob at a time, and whether the presets of `fidelity` keep their
 bounds: a table in doc/accuracy.md, a plot in doc/images, every run a row in doc/data/tradeoff.csv.
 
-usage: scripts/tradeoff.py [--scenes brick_on ...] [--knobs presets step ...] [--seeds N] [--report-only] [--fresh]
+usage: scripts/study/tradeoff.py [--scenes brick_on ...] [--knobs presets step ...] [--seeds N] [--report-only] [--fresh]
 
 A row is not made again while its scene, setting, seed and options are there: stop it at any time, start it again.
 One run at a time, one rank. Seeds are by scene, as few as show what is to be shown on two cores; more: --seeds. All of it

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Exactly solvable problems against the time step, and the step that the law can bear: tables in doc/accuracy.md.
 
-usage: scripts/exact_problems.py
+usage: scripts/study/exact_problems.py
 
 Runs build/tests/bench/exact_bench (scripts/build.sh exact_bench): some seconds, with the guard study a few minutes.
 """
@@ -16,7 +16,7 @@ def output(*words):
 
 
 def main():
-    text = [f"{measuring.made_by('scripts/exact_problems.py')}. Relative errors of the explicit scheme. Steps are shares of T, the duration of the "
+    text = [f"{measuring.made_by('scripts/study/exact_problems.py')}. Relative errors of the explicit scheme. Steps are shares of T, the duration of the "
             "contact by eq. (23); T/5 is what `time_step = \"auto\"` takes. Errors of impacts are root mean squares over eight phases of the first "
             "touch within a step. Order: between T/40 and T/160.", "", output(), "",
             "**What the law can bear.** A loose layer of spheres falls and comes to rest within two falls. Valid: no guard speaks, and the energy "

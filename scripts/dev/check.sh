@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
 # The static checks: format of every source, clang-tidy over src/. Nothing is changed.
-# usage: [BUILD=folder] scripts/check.sh [format|tidy]      (clang-format -i FILE mends the format)
+# usage: [BUILD=folder] scripts/dev/check.sh [format|tidy]      (clang-format -i FILE mends the format)
 set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
-source_dir=$(cd "$here/.." && pwd)
-build=${BUILD:-$source_dir/build}
-"$here/setup.sh" --checks
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${BUILD:-$root/build}
+"$root/scripts/setup.sh" --checks
 
 check_format() {
-  find "$source_dir"/{src,include,tests} -name '*.[ch]pp' -print0 |
+  find "$root"/{src,include,tests} -name '*.[ch]pp' -print0 |
     xargs -0 clang-format --dry-run --Werror -ferror-limit=1 || { echo "check: clang-format found differences" >&2; return 1; }
 }
 
@@ -18,11 +17,11 @@ check_format() {
 # -march and dimension only.
 check_tidy() {
   local folder=$build/check
-  cmake -S "$source_dir" -B "$folder" -G Ninja -DCMAKE_UNITY_BUILD=ON -DPACKMPI_TESTS=OFF -DPACKMPI_BENCHMARKS=OFF \
+  cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_UNITY_BUILD=ON -DPACKMPI_TESTS=OFF -DPACKMPI_BENCHMARKS=OFF \
     --log-level=WARNING >/dev/null
-  BUILD=$folder "$here/build.sh" packmpi_version_header
+  BUILD=$folder "$root/scripts/build.sh" packmpi_version_header
   local one='out=$(clang-tidy -p "$0" --config-file="$1" --quiet ${3:+"$3"} "$2" 2>&1) || { printf "%s\n" "$out"; exit 1; }'
-  local all=(xargs -d '\n' -P "$(nproc)" -I FILE bash -c "$one" "$folder/tidy" "$source_dir/.clang-tidy" FILE)
+  local all=(xargs -d '\n' -P "$(nproc)" -I FILE bash -c "$one" "$folder/tidy" "$root/.clang-tidy" FILE)
   python3 - "$folder" <<'PYTHON' |
 import json, os, sys
 path = f"{sys.argv[1]}/compile_commands.json"
@@ -32,7 +31,7 @@ json.dump(list(entries.values()), open(f"{sys.argv[1]}/tidy/compile_commands.jso
 print("\n".join(sorted(entries, key=lambda file: "kernel_impl" not in file and "Unity" not in file)))   # the longest first
 PYTHON
     "${all[@]}" --checks=-bugprone-suspicious-include &&
-    find "$source_dir/src/comm" -name '*.cpp' | "${all[@]}" '--checks=-*,clang-analyzer-optin.mpi*' ||
+    find "$root/src/comm" -name '*.cpp' | "${all[@]}" '--checks=-*,clang-analyzer-optin.mpi*' ||
     { echo "check: clang-tidy found something" >&2; return 1; }
 }
 

@@ -2,7 +2,7 @@
 """What each way to a shorter run saves and what it changes in the pack, at equal inserted mass: a table in
 doc/performance.md, its data in doc/data/speedups.csv.
 
-usage: scripts/speedups.py [--seeds 4] [--scenes 3d_on 3d_off 2d_on 2d_off] [--settings A2 balanced ...] [--report-only]
+usage: scripts/study/speedups.py [--seeds 4] [--scenes 3d_on 3d_off 2d_on 2d_off] [--settings A2 balanced ...] [--report-only]
 
 Runs build/packmpi on examples 5.3 and 5.1 (twelve layers, so every pack of a scene holds the same spheres), one rank, one run
 at a time. Runs are kept in results/speedups and not repeated while the program's sources and the settings are the same:
@@ -140,7 +140,7 @@ def main():
         writer.writeheader()
         writer.writerows(rows)
     bounds = measuring.BOUNDS
-    text = [f"{measuring.made_by('scripts/speedups.py')}. One rank; medians of CPU seconds from start to written pack; differences from the "
+    text = [f"{measuring.made_by('scripts/study/speedups.py')}. One rank; medians of CPU seconds from start to written pack; differences from the "
             f"reference seed by seed, mean +- standard error. Within: {bounds['phi_bulk']} in phi_bulk, {bounds['coordination']} in "
             f"coordination, {bounds['overlap'] * 100:.0f} % in mean overlap.", ""]
     for scene in options.scenes:

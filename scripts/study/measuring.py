@@ -62,7 +62,7 @@ def read_dump(path):
 
 def read_pack(path):
     """Positions and radii of a pack file."""
-    from packs import Pack
+    from packmpi import Pack
     pack = Pack(path)
     return pack.position, pack.radius
 

@@ -2,18 +2,18 @@
 # A small run on two ranks under valgrind, stopped half-way and gone on with: memory read before it was written, and
 # what AddressSanitizer misses in the libraries below us. Errors end it with code 9. Leaks are left to AddressSanitizer:
 # Open MPI's own would hide ours.
-# usage: [BUILD=folder] scripts/valgrind.sh
+# usage: [BUILD=folder] scripts/dev/valgrind.sh
 set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
-build=${BUILD:-$here/../build}
-source "$here/mpi_env.sh"
-"$here/setup.sh" --valgrind
-BUILD=$build "$here/build.sh"
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${BUILD:-$root/build}
+source "$root/scripts/mpi_env.sh"
+"$root/scripts/setup.sh" --valgrind
+BUILD=$build "$root/scripts/build.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-supp=(--suppressions="$here/../tests/support/valgrind.supp")
+supp=(--suppressions="$root/tests/support/valgrind.supp")
 [[ -f /usr/share/openmpi/openmpi-valgrind.supp ]] && supp+=(--suppressions=/usr/share/openmpi/openmpi-valgrind.supp)
-scene=("$here/../input/quickstart.toml" -o "$out" --set "container.size=[0.2, 0.2, 0.1]" --set layers.thickness=0.1
+scene=("$root/input/quickstart.toml" -o "$out" --set "container.size=[0.2, 0.2, 0.1]" --set layers.thickness=0.1
   --set layers.fraction=0.2 --set layers.duration=0.01 --set output.contacts=true)
 run() {   # the code expected, then options
   local expected=$1 code=0

@@ -2,7 +2,7 @@
 """How much of the ghosts' flight is hidden behind the kernel: runs of two ranks in which ghosts seem to travel for a while
 (build/tests/bench/libpackmpi_slow_halo.so, preloaded), into doc/performance.md.
 
-usage: scripts/halo.py [--side 1.0] [--runs 3] [--flights 0 20 50 100 200]
+usage: scripts/study/halo.py [--side 1.0] [--runs 3] [--flights 0 20 50 100 200]
 
 The floor of input/million.toml is made --side m wide and periodic. A step waits for its reduction as before, and for ghosts only
 if their flight is longer than the work there is in between. Wants a core for each rank.
@@ -49,7 +49,7 @@ def main():
             for flight in options.flights:
                 found[flight].append(run(options, flight, folder))
     first = statistics.median(step for step, _, _ in found[options.flights[0]])
-    lines = [f"{measuring.made_by('scripts/halo.py')}. {found[options.flights[0]][0][2]:,} spheres on two ranks, {options.runs} runs of each flight in turn; median "
+    lines = [f"{measuring.made_by('scripts/study/halo.py')}. {found[options.flights[0]][0][2]:,} spheres on two ranks, {options.runs} runs of each flight in turn; median "
              "(least to most), us a step without rebuilds.", "",
              "| flight of ghosts, us | a step, us | of it sending, waiting for and taking in ghosts | longer than without flight, of the flight |", "|---|---|---|---|"]
     for flight, runs in found.items():

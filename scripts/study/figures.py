@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes one pack for each of the paper's figures 4 to 11 and draws it: doc/images/figure_4.png .. figure_11.png.
 
-usage: scripts/figures.py [--only 4 5 ...] [--program build/packmpi] [--images FOLDER] [--size pixels] [--set KEY=VALUE ...]
+usage: scripts/study/figures.py [--only 4 5 ...] [--program build/packmpi] [--images FOLDER] [--size pixels] [--set KEY=VALUE ...]
 
 The figures show packs of the four examples, with rotation and without. Two minutes of two cores; runs that are done
 are not repeated. 3D needs a virtual screen: scripts/setup.sh --render.
@@ -12,6 +12,7 @@ from pathlib import Path
 
 import common
 import reproduce
+from packmpi.render import pictures_of
 
 SEED = 1
 # The paper's figure for each example, with rotation and without.
@@ -22,7 +23,7 @@ FIGURES = {("5.1", "on"): 4, ("5.1", "off"): 5, ("5.2", "on"): 6, ("5.2", "off")
 def draw(run, number, images, size):
     """Coloured by the layer a particle came with, equal radii; by radius, graded ones; discs with their force chains."""
     path = images / f"figure_{number}.png"
-    wrong = common.pictures_of(run.folder / f"{run.name}.hdf", [path], "-o", path, "--size", size)
+    wrong = pictures_of(run.folder / f"{run.name}.hdf", [path], "-o", path, "--size", size)
     if wrong:
         common.fail(f"figure {number} could not be drawn: {wrong}")
 

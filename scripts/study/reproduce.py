@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the packs of the paper's four tables and writes how they compare: doc/reproduction.md, its data and its plot.
 
-usage: scripts/reproduce.py [--seeds N] [--examples 5.1 5.3 ...] [--jobs N] [--dry-run | --report-only]
+usage: scripts/study/reproduce.py [--seeds N] [--examples 5.1 5.3 ...] [--jobs N] [--dry-run | --report-only]
 
 Runs build/packmpi on input/paper_5_*.toml, rotation on and off, seeds 1 .. N, one rank a run, as many runs at a time as
 there are cores. Runs that are done are kept in results/reproduction and not repeated while the scene and the program's

@@ -2,7 +2,7 @@
 """Kills runs at random moments with SIGKILL, takes their folder away, goes on from what is left, and compares the packs with
 that of an untouched run.
 
-  scripts/faults.py [-n KILLS] [--build FOLDER] [--tests] [--document FILE]
+  scripts/dev/faults.py [-n KILLS] [--build FOLDER] [--tests] [--document FILE]
 
 Every trial starts `packmpi --restart auto` on 1 to 3 ranks and kills it at a random moment (mpirun and all ranks, one rank, or
 mpirun alone), does so once more, and then lets it end; trials go on until there were KILLS kills. A few more have their folder
@@ -23,7 +23,8 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from common import ENVIRONMENT, ROOT
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "study"))
+from common import ENVIRONMENT, ROOT  # noqa: E402  (of scripts/study)
 
 try:
     import h5py
@@ -213,7 +214,7 @@ def main():
         rows, passed = count_tests(build)
         table += rows
         right &= passed
-    text = f"{measuring.made_by('scripts/faults.sh')}:\n\n" + "\n".join(table)
+    text = f"{measuring.made_by('scripts/dev/faults.sh')}:\n\n" + "\n".join(table)
     print(text)
     if options.document:
         measuring.write_block(options.document, "faults", text)

@@ -1,4 +1,4 @@
-"""The report of scripts/tradeoff.py: tables and plot for doc/accuracy.md from the rows of doc/data/tradeoff.csv."""
+"""The report of scripts/study/tradeoff.py: tables and plot for doc/accuracy.md from the rows of doc/data/tradeoff.csv."""
 import math
 import statistics
 
@@ -234,7 +234,7 @@ def plot(path, rows, knobs, scenes, reference):
 def write(doc, rows, scenes, knobs, reference):
     total = sum(float(row["cpu_seconds"]) for row in rows)
     commits = sorted({row["commit"] for row in rows})
-    text = [f"{measuring.made_by('scripts/tradeoff.py')}: {len(rows)} runs, {total / 60.0:.0f} minutes of CPU time, one rank each, "
+    text = [f"{measuring.made_by('scripts/study/tradeoff.py')}: {len(rows)} runs, {total / 60.0:.0f} minutes of CPU time, one rank each, "
             f"commits {', '.join(commits)}.", "", "### The presets", "", *presets(rows, scenes, reference),
             "### What the packs are like inside", "", *inside(rows, scenes, reference),
             "### One knob at a time", "", *single_knobs(rows, knobs, reference),
