@@ -5,7 +5,7 @@
 #   --peers   also LAMMPS and LIGGGHTS, to compare with
 #   --readers also LAMMPS, LIGGGHTS, YADE and VTK, which read packs that were converted for them
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
-#   --report  also what --render brings, and Chromium, in which the test of scripts/report.py reads its page
+#   --report  also what --render brings, and Chromium, in which the test of packmpi report reads its page
 #   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/dev/check.sh
 #   --fuzz    also clang with libFuzzer, for scripts/dev/fuzz.sh

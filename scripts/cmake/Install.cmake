@@ -17,6 +17,14 @@ file(RELATIVE_PATH bin_to_lib ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_
 set_target_properties(packmpi_program PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
 install(TARGETS packmpi_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
+# The tools in Python: packmpi render, plot, report; and import packmpi.
+install(DIRECTORY scripts/python/packmpi DESTINATION ${PACKMPI_PYTHON_DIR} PATTERN __pycache__ EXCLUDE)
+
+# Examples and the documentation, readable as they are.
+install(DIRECTORY input/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/input)
+install(DIRECTORY doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
 # Manual page and shell completions, as the installed program prints them.
 set(share "\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}")
 foreach(page "manual|man/man1/packmpi.1" "completion bash|bash-completion/completions/packmpi"

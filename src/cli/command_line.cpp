@@ -193,6 +193,12 @@ void declare_estimate(CLI::App& app, Request& request) {
 
 void declare_nothing(CLI::App&, Request&) {}
 
+// A tool's own options are those of its program in Python: packmpi render --help.
+void declare_tool(CLI::App& app, Request& request) {
+  app.add_option("PACK", request.run.scene, "pack (NAME.hdf); --help tells the options")->required();
+  app.allow_extras();
+}
+
 void declare_completion(CLI::App& app, Request& request) {
   app.add_option("SHELL", request.shell, "bash, zsh or fish")
       ->required()
@@ -218,6 +224,10 @@ constexpr std::array declarations{
     Declaration{Command::analyze, "analyze",
                 "measure a pack inside: profiles, contacts, forces, g(r), order; NAME.analysis.json", declare_analyze},
     Declaration{Command::convert, "convert", "write a pack in the format of another code", declare_convert},
+    Declaration{Command::tool, "render", "draw a pack: NAME.png", declare_tool},
+    Declaration{Command::tool, "plot", "plot density, sizes, g(r) and history of a pack: NAME.density.png and so on",
+                declare_tool},
+    Declaration{Command::tool, "report", "write one page on a pack, with pictures and plots: NAME.html", declare_tool},
     Declaration{Command::manual, "manual", "print the manual page (packmpi.1)", declare_nothing},
     Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
                 declare_completion}};
@@ -231,7 +241,10 @@ void declare_all(CLI::App& app, Request& request) {
   for (const Declaration& d : declarations) {
     CLI::App* command = app.add_subcommand(d.name, d.text);
     d.declare(*command, request);
-    command->callback([&request, &d] { request.command = d.command; });
+    command->callback([&request, &d] {
+      request.command = d.command;
+      request.name = d.name;
+    });
   }
 }
 

@@ -10,11 +10,12 @@
 
 namespace packmpi::cli {
 
-enum class Command { run, check, estimate, info, analyze, convert, init, schema, manual, completion };
+enum class Command { run, check, estimate, info, analyze, convert, init, tool, schema, manual, completion };
 
 /// What the user asked on the command line.
 struct Request {
   Command command = Command::run;
+  std::string name = "run";           ///< of the command, as it is written
   run::Options run;                   ///< of run; its scene is the file of info, analyze and init, too
   int dimension = 3;                  ///< of the scene that init writes
   exporters::ConvertRequest convert;  ///< convert: all of it but `force`

@@ -96,6 +96,9 @@ int act(const comm::Comm& comm, const Request& request) {
     if (comm.rank() == 0) fmt::print("{}", words);
     return 0;
   }
+  if (request.command == Command::tool) {  // alone, it would have begun before MPI (cli/tools.hpp)
+    throw Error(ExitCode::bad_input, fmt::format("packmpi {} is one process: start it without mpirun", request.name));
+  }
   if (request.command == Command::estimate) {
     const report::Estimate told = forecast::estimate(comm, request.run.scene, request.run.overrides, request.question);
     if (comm.rank() == 0) fmt::print("{}", request.question.json ? report::to_json(told) : report::to_table(told));

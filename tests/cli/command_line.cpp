@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "cli/options.hpp"
+#include "cli/tools.hpp"
 
 namespace packmpi::cli {
 namespace {
@@ -33,6 +35,24 @@ TEST(CommandLine, CommandsAndOptions) {
   EXPECT_EQ(options.run.folder, "out");
   EXPECT_TRUE(options.run.force);
   EXPECT_EQ(options.run.verbosity, log::Verbosity::quiet);
+}
+
+TEST(CommandLine, ToolsBeginBeforeMpiAndAlone) {
+  const auto wants = [](std::vector<const char*> words) {
+    words.insert(words.begin(), "packmpi");
+    return wants_tool(static_cast<int>(words.size()), words.data());
+  };
+  // This test runs under mpirun, where no tool begins; there, the command line knows the command, and keeps its
+  // options.
+  EXPECT_FALSE(wants({"report", "a.hdf"}));
+  const auto options = std::get<Request>(parse({"report", "a.hdf", "--size", "300"}));
+  EXPECT_EQ(options.command, Command::tool);
+  EXPECT_EQ(options.name, "report");
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) unsetenv(name);
+  EXPECT_TRUE(wants({"report", "a.hdf"}));
+  EXPECT_TRUE(wants({"render", "a.hdf"}));
+  EXPECT_FALSE(wants({"a.toml"}));
+  EXPECT_FALSE(wants({}));
 }
 
 TEST(CommandLine, EstimateAsksForWhatIsOpen) {

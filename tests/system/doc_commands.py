@@ -20,7 +20,7 @@ COMMANDS = {
     "mpirun -n 4 build/packmpi input/quickstart.toml -o results": SMALL,
     "build/packmpi check input/quickstart.toml": "",
     "build/packmpi input/quickstart.toml --seed 2 --set layers.duration=0.5 -o results/seed_2": SMALL,
-    "scripts/render.py quickstart.hdf -o quickstart.png --color contacts": "--size 200",
+    "build/packmpi render quickstart.hdf -o quickstart.png --color contacts": "--size 200",
     "mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 2000 || test $? = 75":
         ("mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 150 " + SMALL + " || test $? = 75"),
     "mpirun -n 3 build/packmpi input/quickstart.toml -o night --restart auto": SMALL,
@@ -29,14 +29,15 @@ COMMANDS = {
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --floor 0.6,open --no-probe --json": "",
     "packmpi analyze quickstart.hdf": "",
-    "scripts/plot.py quickstart.hdf": "--only density",
-    "scripts/report.py quickstart.hdf": "--size 150",
+    "packmpi plot quickstart.hdf": "--only density",
+    "build/packmpi report quickstart.hdf": "--size 150",
+    "packmpi report quickstart.hdf": "--size 150",
     "packmpi convert quickstart.hdf --to lammps": "",
     "lmp -in quickstart.lammps.in": "-var steps 2 -screen none",
     "scripts/study/figures.py": "--only 4 --size 200 --images made --set layers.duration=0.01",
 }
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
-NEEDS = {"render.py": "vtk", "lmp ": "lmp"}       # passed over without it
+NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",

@@ -29,6 +29,7 @@ command=("$@")
 expect 0 '^packmpi [0-9]' --version
 expect 0 'packmpi SCENE.toml' --help
 expect 2 'SCENE is required' run
+expect 2 'packmpi report is one process: start it without mpirun' report some.hdf
 expect 2 'no-such.toml' no-such.toml
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
@@ -51,6 +52,17 @@ must test ! -e full/quickstart.hdf
 expect 4 'layer 1, step [0-9]+, .* s: particle [0-9]+ overlaps .*, beyond 0.5 of it: position .* on rank [01]; it touches .*overlap .*; use dynamics.time_step = .* s or less .*, or particles.youngs_modulus = .* Pa or more' "${tiny[@]}" -o blown -q \
   --set particles.youngs_modulus=1e4 --set jamming.gravity=2000
 must test ! -e blown/quickstart.hdf
+
+# The tools in Python, without mpirun: what is missing is named, with Debian's package.
+mpirun=("${command[@]}")
+command=(env PACKMPI_PYTHON=/no/python3 "${mpirun[-1]}")
+expect 5 'packmpi plot: cannot start /no/python3: No such file.*apt-get install python3 python3-h5py' plot out/quickstart.hdf
+command=(cp "${mpirun[-1]}" alone)
+must "${command[@]}"
+command=(env LD_LIBRARY_PATH="$(dirname "${mpirun[-1]}")" ./alone)
+expect 5 'its Python package is not there' plot out/quickstart.hdf
+rm alone
+command=("${mpirun[@]}")
 
 expect 5 'Not a directory|not a directory' "${tiny[@]}" -o out/quickstart.json/sub -q
 if mkdir disk && mount -t tmpfs -o size=256k tmpfs disk 2>/dev/null; then

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The page of scripts/report.py in a real browser: all is drawn, nothing is fetched, nothing complains, the numbers are right.
+"""The page of packmpi report in a real browser: all is drawn, nothing is fetched, nothing complains, the numbers are right.
 
 usage: report.py ROOT FOLDER -- mpirun ... packmpi
 A graded pack in 3D and discs in 2D. Exit code 77: Chromium or a Python package is missing (scripts/setup.sh --report).
@@ -24,7 +24,7 @@ except ImportError as error:
 
 SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.015", "--set", "output.contacts=true", "--quiet"]
 SCENES = {"grading": ["--set", 'container.size=["80 mm", "80 mm", "60 mm"]'], "periodic_2d": []}
-ROWS = """[...document.querySelectorAll('#asked tr')].map(row => [...row.children].map(cell => cell.textContent))"""
+ROWS = """[...document.querySelectorAll('#targets tr')].map(row => [...row.children].map(cell => cell.textContent))"""
 IMAGES = """Promise.all([...document.images].map(image => image.decode().then(() => [image.alt, image.naturalWidth],
                                                                              () => [image.alt, 0])))"""
 # The contrast of text and paper, by the formula of WCAG 2.
@@ -74,22 +74,26 @@ def check_numbers(name, rows, hdf):
     """What the pack says, found again on the page; and sizes by a plain count."""
     with h5py.File(hdf) as pack:
         radius, summary = np.sort(pack["particles/radius"][:]), dict(pack["summary"].attrs)
-    got = {}
+    achieved = {}
     part = ""
     for row in rows:
         part = row[0] if len(row) == 1 else part
         if len(row) > 1:
-            got[part, row[0]] = row[2]
+            words, _, unit = row[0].partition(" [")
+            there = value(row[2])
+            achieved[part, words] = there and there * {"": 1.0, "m]": 1.0, "mm]": 1e-3}[unit]
     mass = np.cumsum(radius ** 3) / np.sum(radius ** 3)
-    wanted = {("The pack", "particles"): len(radius), ("The pack", "height [m]"): summary["height"],
-              ("The pack", "φ of the bulk"): summary["phi_bulk"]}
+    wanted = {("The pack", "particles"): len(radius), ("The pack", "height"): summary["height"],
+              ("The pack", "φ of the bulk"): summary["phi_bulk"],
+              ("The pack", "porosity of the bulk, 1 − φ"): 1.0 - summary["phi_bulk"],
+              ("The pack", "void ratio of the bulk, (1 − φ) / φ"): 1.0 / summary["phi_bulk"] - 1.0}
     for percent in (10, 30, 50, 60, 90):
         by_number = radius[int(np.ceil(percent / 100 * len(radius))) - 1]
-        wanted["Diameters by number", f"D{percent} [mm]"] = 2000.0 * by_number
-        wanted["Diameters by mass", f"D{percent} [mm]"] = 2000.0 * radius[np.argmax(mass >= percent / 100)]
+        wanted["Diameters by number", f"D{percent}"] = 2.0 * by_number
+        wanted["Diameters by mass", f"D{percent}"] = 2.0 * radius[np.argmax(mass >= percent / 100)]
     for key, right in wanted.items():
-        there = value(got.get(key, ""))
-        expect(there is not None and abs(there - right) <= 1e-3 * abs(right), f"{name}: {key} is {got.get(key)!r}, not {right}")
+        there = achieved.get(key)
+        expect(there is not None and abs(there - right) <= 1e-3 * abs(right), f"{name}: {key} is {there!r}, not {right}")
 
 
 def check_page(page, path, pictures):
@@ -104,6 +108,10 @@ def check_page(page, path, pictures):
     expect(all(width > 0 for _, width in images), f"{name}: not drawn: {images}")
     expect(all(words for words, _ in images), f"{name}: an image says nothing to those who cannot see it")
     check_numbers(name, page.value(ROWS), path.with_suffix(".hdf"))
+    alerts = page.value("[...document.querySelectorAll('[role=alert]')].map(one => one.textContent)")
+    with h5py.File(path.with_suffix(".hdf")) as pack:
+        missed = ["lower than its target"] if not pack["summary"].attrs["reached"] else []
+    expect(len(alerts) == len(missed) and all(words in alerts[0] for words in missed), f"{name}: warnings {alerts}, not {missed}")
     scene = page.value("document.querySelector('#provenance pre').textContent")
     with h5py.File(path.with_suffix(".hdf")) as pack:
         own = pack["provenance"].attrs["effective_input"]
@@ -119,9 +127,9 @@ def check_page(page, path, pictures):
             page.screenshot(path.with_suffix(f".{'dark' if dark else 'light'}.{width}.png"))
 
 
-def check_plots(script, folder, name):
+def check_plots(program, folder, name):
     """The plots alone, as files."""
-    run(sys.executable, script, folder / f"{name}.hdf", "--only", "density", "settling", "-o", folder / "plots")
+    run(program, "plot", folder / f"{name}.hdf", "--only", "density", "settling", "-o", folder / "plots")
     for plot in ("density", "settling"):
         expect((folder / "plots" / f"{name}.{plot}.png").read_bytes().startswith(b"\x89PNG"), f"no plot {plot}.png")
 
@@ -138,8 +146,8 @@ def main():
     can_draw = {"grading": has_vtk and shutil.which("xvfb-run") is not None, "periodic_2d": True}
     for name, change in SCENES.items():
         run(*program, root / "input" / f"{name}.toml", "-o", folder, *SMALL, *change, codes=(0, 3))
-        run(sys.executable, root / "scripts" / "report.py", folder / f"{name}.hdf", "--size", 200, "--program", program[-1])
-    check_plots(root / "scripts" / "plot.py", folder, "periodic_2d")
+        run(program[-1], "report", folder / f"{name}.hdf", "--size", 200)
+    check_plots(program[-1], folder, "periodic_2d")
     with tempfile.TemporaryDirectory() as profile, browser.Browser(profile) as page:
         check_watcher(page)
         for name in SCENES:

@@ -1,76 +1,69 @@
-#!/usr/bin/python3
-"""Plots of a pack: density profile, sizes target and achieved, pair distribution, how it settled.
+"""Plots of a pack: density profile, target and achieved sizes, pair distribution, how it settled.
 
-usage: scripts/plot.py PACK.hdf [-o FOLDER] [--format png|svg] [--only density sizes pairs settling] [--program packmpi]
+usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density sizes pairs settling] [--program packmpi]
 
-Writes NAME.density.png and so on beside the pack, or in FOLDER. Needs what scripts/setup.sh --plots installs. The
-numbers are those of `packmpi analyze`, which is run first if NAME.analysis.json is older than the pack or not there;
-the history is NAME.steps.csv, and is left out if that is not beside the pack.
+Writes NAME.density.png and so on beside the pack, or in FOLDER. The numbers are those of `packmpi analyze`, which is run
+first if NAME.analysis.json is older than the pack or not there; the history is NAME.steps.csv, and is left out if that is not
+beside the pack.
 """
 import argparse
 from pathlib import Path
+from typing import Any, Union
 
-from common import ACCENT, BACKGROUND, GOT, GRID, INK, OTHER, fail, missing
+import matplotlib
+import numpy as np
 
-try:
-    import matplotlib
-    import numpy as np
-except ImportError as error:
-    missing(error.name, "plots")
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  (after the choice of the backend)
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 
-import packs  # noqa: E402
+from . import sizes as size_curves  # noqa: E402
+from .problem import Problem  # noqa: E402
+from .read import Floats, Pack  # noqa: E402
+from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET  # noqa: E402
+from .units import length_unit  # noqa: E402
 
-plt.rcParams.update({
+LOOK = {
     "font.size": 9.5, "axes.edgecolor": INK, "axes.labelcolor": INK, "text.color": INK, "xtick.color": INK,
     "ytick.color": INK, "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.7, "axes.axisbelow": True,
     "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "legend.fontsize": 8.5,
-    "lines.linewidth": 1.6, "figure.facecolor": BACKGROUND, "axes.facecolor": "none", "svg.hashsalt": "packmpi"})
+    "lines.linewidth": 1.6, "figure.facecolor": BACKGROUND, "axes.facecolor": "none", "svg.hashsalt": "packmpi"}
+LOGARITHMIC = 1.5   # largest over smallest diameter, beyond which sizes get a logarithmic axis, as sieves do
 
 
-def new_figure(rows=1):
-    figure, axes = plt.subplots(rows, 1, figsize=(4.7, 3.4), layout="constrained", sharex=True)
-    return figure, axes
+def new_figure(rows: int = 1) -> tuple[Figure, Any]:
+    """A figure with `rows` axes one above the other."""
+    return plt.subplots(rows, 1, figsize=(4.7, 3.4), layout="constrained", sharex=True)
 
 
-def staircase(profile):
-    """Edges and values of a profile of packmpi analyze."""
+def staircase(profile: dict[str, Any]) -> tuple[Floats, Floats]:
+    """Edges (n + 1) and values (n) of a profile of packmpi analyze."""
     values = np.array(profile["values"], dtype=float)
     return profile["from"] + profile["width"] * np.arange(len(values) + 1), values
 
 
-def density(pack, analysis):
+def density(pack: Pack, analysis: dict[str, Any]) -> Figure:
     """Solid fraction over the height."""
     edges, values = staircase(analysis["density_profile"]["xyz"[pack.dimension - 1]])
-    asked = pack.size[-1]
+    scale, unit = length_unit(pack.size[-1])
+    edges, target = scale * edges, scale * pack.size[-1]
     figure, axes = new_figure()
-    axes.axvspan(0.2 * asked, 0.8 * asked, color=OTHER, alpha=0.16, linewidth=0)
-    axes.stairs(values, edges, color=GOT, linewidth=1.5, baseline=None)
-    axes.hlines(pack.phi_bulk, 0.2 * asked, 0.8 * asked, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
-    axes.annotate(rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}", (0.5 * asked, pack.phi_bulk), (0, -30),
+    axes.axvspan(0.2 * target, 0.8 * target, color=OTHER, alpha=0.16, linewidth=0)
+    axes.stairs(values, edges, color=ACHIEVED, linewidth=1.5, baseline=None)
+    axes.hlines(pack.phi_bulk, 0.2 * target, 0.8 * target, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    axes.annotate(rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}", (0.5 * target, pack.phi_bulk), (0, -30),
                   textcoords="offset points", ha="center", fontsize=9)
-    axes.axvline(asked, color=ACCENT, linestyle=(0, (6, 3)))
-    axes.annotate("target height", (asked, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
-                  va="bottom", color=ACCENT, fontsize=8.5)
-    axes.set(xlabel="height [m]", ylabel="solid fraction", xlim=(0.0, max(edges[-1], 1.02 * asked)), ylim=(0.0, None))
+    axes.axvline(target, color=TARGET, linestyle=(0, (6, 3)))
+    axes.annotate("target height", (target, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
+                  va="bottom", color=TARGET, fontsize=8.5)
+    axes.set(xlabel=f"height [{unit}]", ylabel="solid fraction", xlim=(0.0, max(edges[-1], 1.02 * target)), ylim=(0.0, None))
     return figure
 
 
-def sizes(pack, _):
-    """What passes a sieve, target and achieved, by mass and by number; nothing if all radii are equal."""
-    if np.ptp(pack.radius) == 0.0:
-        return None
-    r, *asked = packs.target_curve(pack.scene()["particles"]["radius"])
-    got_r, *got = packs.achieved_curve(pack.radius)
-    figure, axes = new_figure()
-    for shares, found, colour, name in zip(asked, got, (OTHER, GOT), ("by number", "by mass")):
-        axes.step(2000.0 * np.append(got_r[0], got_r), 100.0 * np.append(0.0, found), where="post", color=colour,
-                  label=f"got, {name}")
-        axes.plot(2000.0 * r, 100.0 * shares, color=INK if name == "by number" else ACCENT, linewidth=1.2,
-                  linestyle=(0, (4, 2.5)), label=f"asked, {name}")
-    low, high = 2000.0 * min(r[0], got_r[0]), 2000.0 * max(r[-1], got_r[-1])
-    if high > 3.0 * low:
+def size_axis(axes: Axes, low: float, high: float, unit: str) -> None:
+    """The axis of diameters between `low` and `high`, logarithmic unless they are nearly equal."""
+    if high > LOGARITHMIC * low:
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda x, _: f"{x:g}"))
         axes.xaxis.set_minor_formatter(matplotlib.ticker.LogFormatter(minor_thresholds=(2.0, 0.9)))
@@ -78,46 +71,66 @@ def sizes(pack, _):
     else:
         rim = 0.05 * (high - low) or 0.1 * high
         axes.set_xlim(low - rim, high + rim)
-    axes.set(xlabel="diameter [mm]", ylabel="passing [%]", ylim=(-2.0, 102.0))
-    axes.legend(loc="upper left" if np.interp(np.sqrt(low * high), 2000.0 * r, asked[0]) < 0.5 else "lower right")
+    axes.set(xlabel=f"diameter [{unit}]", ylabel="passing [%]", ylim=(-2.0, 102.0))
+
+
+def sizes(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
+    """What passes a sieve, target and achieved, by mass and by number; None if all radii are equal."""
+    if np.ptp(pack.radius) == 0.0:
+        return None
+    target_r, *target = size_curves.target_curve(pack.scene()["particles"]["radius"])
+    achieved_r, *achieved = size_curves.achieved_curve(pack.radius)
+    scale, unit = length_unit(2.0 * pack.radius.max())
+    scale *= 2.0   # radius [m] to diameter [unit]
+    figure, axes = new_figure()
+    for wanted, found, colour, name in zip(target, achieved, (OTHER, ACHIEVED), ("by number", "by mass")):
+        axes.step(scale * np.append(achieved_r[0], achieved_r), 100.0 * np.append(0.0, found), where="post", color=colour,
+                  label=f"achieved, {name}")
+        axes.plot(scale * target_r, 100.0 * wanted, color=INK if name == "by number" else TARGET, linewidth=1.2,
+                  linestyle=(0, (4, 2.5)), label=f"target, {name}")
+    low, high = scale * min(target_r[0], achieved_r[0]), scale * max(target_r[-1], achieved_r[-1])
+    size_axis(axes, low, high, unit)
+    axes.legend(loc="upper left" if np.interp(np.sqrt(low * high), scale * target_r, target[0]) < 0.5 else "lower right")
     return figure
 
 
-def pairs(pack, analysis):
-    """Pair distribution, 1 where places are independent of each other."""
+def pairs(_: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Pair distribution, 1 where places are independent of each other; None if the pack is too small for it."""
     edges, values = staircase(analysis["pair_distribution"]["g"])
     if not np.any(values):
         return None
     figure, axes = new_figure()
     axes.axhline(1.0, color=OTHER, linewidth=1.0)
-    axes.stairs(values, edges, color=GOT, linewidth=1.5, baseline=None)
+    axes.stairs(values, edges, color=ACHIEVED, linewidth=1.5, baseline=None)
     axes.set(xlabel=r"distance of centres [mean diameters]", ylabel="g(r)", xlim=(0.0, edges[-1]), ylim=(0.0, None))
     return figure
 
 
-def legend_above(axes):
+def legend_above(axes: Axes) -> None:
+    """The legend in one line above the axes."""
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, columnspacing=1.0, handlelength=1.4,
                 borderaxespad=0.1)
 
 
-def settling(pack, _):
-    """Height and energy of the moving particles over simulated time; a line where a layer comes."""
+def settling(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
+    """Height and energy of the moving particles over simulated time, a line where a layer comes; None without history."""
     steps = pack.steps()
     if not steps:
         return None
     figure, (above, below) = new_figure(2)
+    scale, unit = length_unit(pack.size[-1])
     time = steps["time"]
     starts = time[np.flatnonzero(np.diff(steps["layer"], prepend=-1.0))]
     for axes in (above, below):
         for start in starts[1:]:
             axes.axvline(start, color=OTHER, linewidth=0.6, alpha=0.5)
         axes.grid(axis="x", visible=False)
-    above.axhline(pack.size[-1], color=ACCENT, linewidth=1.2, linestyle=(0, (6, 3)), label="target height")
-    above.plot(time, steps["top"], color=GOT, label="highest top")
-    above.plot(time, steps["mean height"], color=OTHER, label="mean height")
-    above.set(ylabel="[m]", ylim=(0.0, None))
+    above.axhline(scale * pack.size[-1], color=TARGET, linewidth=1.2, linestyle=(0, (6, 3)), label="target height")
+    above.plot(time, scale * steps["top"], color=ACHIEVED, label="highest top")
+    above.plot(time, scale * steps["mean height"], color=OTHER, label="mean height")
+    above.set(ylabel=f"[{unit}]", ylim=(0.0, None))
     legend_above(above)
-    for name, colour in (("kinetic energy", GOT), ("elastic energy", OTHER)):
+    for name, colour in (("kinetic energy", ACHIEVED), ("elastic energy", OTHER)):
         below.plot(time, np.where(steps[name] > 0.0, steps[name], np.nan), color=colour, label=name)
     below.set(yscale="log", ylabel="[J]", xlabel="simulated time [s]", xlim=(0.0, time[-1]))
     legend_above(below)
@@ -127,38 +140,39 @@ def settling(pack, _):
 PLOTS = {"density": density, "sizes": sizes, "pairs": pairs, "settling": settling}
 
 
-def draw(name, pack, analysis, path):
-    """One plot into a file, PNG or SVG by its ending. False if there is nothing to show."""
-    figure = PLOTS[name](pack, analysis)
-    if figure is None:
-        return False
-    extra = {"metadata": {"Date": None}} if Path(path).suffix == ".svg" else {"dpi": 160}
-    try:
-        figure.savefig(path, **extra)
-    except OSError as error:
-        fail(f"cannot write {path}: {error}")
-    plt.close(figure)
+def draw(name: str, pack: Pack, analysis: dict[str, Any], path: Union[str, Path]) -> bool:
+    """One plot of PLOTS into a file, PNG or SVG by its ending. False if there is nothing to show."""
+    with plt.rc_context(LOOK):
+        figure = PLOTS[name](pack, analysis)
+        if figure is None:
+            return False
+        extra = {"metadata": {"Date": None}} if Path(path).suffix == ".svg" else {"dpi": 160}
+        try:
+            figure.savefig(path, **extra)
+        except OSError as error:
+            raise Problem(f"cannot write {path}: {error}") from error
+        plt.close(figure)
     return True
 
 
-def main():
-    parser = argparse.ArgumentParser(description="Plot what a pack (NAME.hdf) is like.")
+def main(words: list[str]) -> None:
+    """packmpi plot WORDS."""
+    parser = argparse.ArgumentParser(prog="packmpi plot", description="Plot what a pack (NAME.hdf) is like.")
     parser.add_argument("pack", help="pack file, NAME.hdf")
     parser.add_argument("-o", "--output", type=Path, help="folder for the plots (default: that of the pack)")
     parser.add_argument("--format", choices=["png", "svg"], default="png")
     parser.add_argument("--only", nargs="+", choices=list(PLOTS), default=list(PLOTS), help="default: all")
-    parser.add_argument("--program", help="packmpi (default: build/packmpi, or the one in PATH)")
-    options = parser.parse_args()
-    pack = packs.Pack(options.pack)
+    parser.add_argument("--program", help="packmpi, to analyze the pack (default: this one)")
+    options = parser.parse_args(words)
+    pack = Pack(options.pack)
     if pack.count == 0:
-        fail(f"{options.pack} has no particles")
+        raise Problem(f"{options.pack} has no particles")
     folder = options.output or pack.path.parent
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Problem(f"cannot make {folder}: {error}") from error
     analysis = pack.analysis(options.program)
     for name in options.only:
         path = folder / f"{pack.name}.{name}.{options.format}"
         print(f"{path}" if draw(name, pack, analysis, path) else f"nothing to show for {name}")
-
-
-if __name__ == "__main__":
-    main()

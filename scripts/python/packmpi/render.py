@@ -1,52 +1,60 @@
-#!/usr/bin/python3
 """A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the target height.
 
-usage: scripts/render.py PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed ...] [--size pixels] [--no-chains]
+usage: packmpi render PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed ...] [--size pixels] [--no-chains]
 
-3D is drawn by VTK on a virtual screen, 2D by matplotlib; scripts/setup.sh --render installs both.
-Several colours make several pictures, picture.radius.png and so on. A 2D pack with /contacts (output.contacts = true)
-gets its force chains, lines as thick as the normal forces; of several pictures, the first.
+3D is drawn by VTK on a (virtual) X screen, 2D by matplotlib. Several colours make several pictures, picture.radius.png and
+so on. A 2D pack with /contacts (output.contacts = true) gets its force chains, lines as thick as the normal forces; of several
+pictures, the first.
 """
 import argparse
 import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, Iterable, Union
 
-from common import ACCENT, BACKGROUND, INK, fail, missing
+import matplotlib
+import numpy as np
 
-try:
-    import matplotlib
-    import numpy as np
-except ImportError as error:
-    missing(error.name, "render")
 matplotlib.use("Agg")
 from matplotlib import colors, pyplot as plt  # noqa: E402  (after the choice of the backend)
+from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 
-from packs import Pack  # noqa: E402
+from .problem import Problem  # noqa: E402
+from .read import Floats, Pack  # noqa: E402
+from .style import BACKGROUND, INK, TARGET  # noqa: E402
+from .units import length_unit  # noqa: E402
+
+PROPERTIES = ("radius", "layer", "contacts", "speed")
 
 
-def softened(name):
+def softened(name: str) -> colors.Colormap:
     """A colour map without its ends, on which shading and highlights are hard to see."""
     return colors.LinearSegmentedColormap.from_list(name, plt.get_cmap(name)(np.linspace(0.12, 0.92, 256)))
 
 
 class Colouring:
-    """Colours of the particles by one property, and the bar that explains them."""
+    """Colours of the particles by one of PROPERTIES, and the bar that explains them. None: radius, or layer if all are equal."""
 
-    def __init__(self, pack, what):
+    def __init__(self, pack: Pack, what: Union[str, None] = None) -> None:
         equal = pack.count == 0 or np.ptp(pack.radius) == 0.0
         self.what = what or ("layer" if equal else "radius")
+        scale, unit = length_unit(float(pack.radius.max()) if pack.count else 1.0)
         self.values, self.label, cmap = {
-            "radius": (pack.radius * 1000.0, "radius [mm]", "viridis"),
+            "radius": (scale * pack.radius, f"radius [{unit}]", "viridis"),
             "layer": (pack.layer + 1, "layer of insertion", "viridis"),
-            "contacts": (pack.contacts, "touching particles", "plasma"),
+            "contacts": (pack.contacts, "coordination number", "plasma"),
             "speed": (np.maximum(pack.speed, 1e-12), "speed [m/s]", "magma"),
         }[self.what]
         self.cmap = softened(cmap)
-        self.ticks = None
+        self.ticks: Union[list[float], None] = None
         self.norm = self.scale()
 
-    def scale(self):
+    def scale(self) -> colors.Normalize:
+        """From values to places on the colour map."""
         if len(self.values) == 0:
             return colors.Normalize(0.0, 1.0)
         low, high = float(self.values.min()), float(self.values.max())
@@ -59,54 +67,65 @@ class Colouring:
             low, high, self.ticks = 0.9 * low, 1.1 * low, [low]
         return colors.Normalize(low, high)
 
-    def steps(self, low, high):
+    def steps(self, low: int, high: int) -> colors.Normalize:
         """One colour for each whole number."""
         count = high - low + 1
         self.cmap = colors.ListedColormap(self.cmap(np.linspace(0.0, 1.0, count)))
         self.ticks = list(range(low, high + 1, max(1, count // 12)))
         return colors.BoundaryNorm(np.arange(low, high + 2) - 0.5, count)
 
-    def fade(self):
+    def fade(self) -> None:
         """Paler, so that lines drawn over the particles stand out."""
         pale = 0.45 * self.cmap(np.linspace(0.0, 1.0, self.cmap.N)) + 0.55
         self.cmap = colors.ListedColormap(pale)
 
-    def rgba(self):
+    def rgba(self) -> Floats:
+        """(N, 4): the particles' colours, 0 to 1."""
         return self.cmap(self.norm(self.values))
 
-    def bar(self, figure, axes):
+    def bar(self, figure: Figure, axes: Axes) -> None:
+        """Draws the bar into `axes`."""
         bar = figure.colorbar(ScalarMappable(self.norm, self.cmap), cax=axes, ticks=self.ticks)
         if self.ticks is not None:
             bar.ax.minorticks_off()
         bar.outline.set_linewidth(0.6)
         bar.set_label(self.label)
-        return bar
 
 
-def caption(pack):
-    size = " x ".join(f"{length:g}" for length in pack.size)
-    return (f"{pack.count:,} {pack.noun} in {size} m,  "
+def container_size(pack: Pack) -> str:
+    """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest."""
+    scale, unit = length_unit(float(pack.size.max()))
+    return " x ".join(f"{scale * length:g}" for length in pack.size) + f" {unit}"
+
+
+def caption(pack: Pack) -> str:
+    """What stands above a picture."""
+    return (f"{pack.count:,} {pack.noun} in {container_size(pack)},  "
             rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}")
 
 
-def draw_3d(pack, colouring, path, pixels):
-    import render_3d  # needs matplotlib and numpy, checked above
+def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int) -> None:
+    """A picture of spheres, PNG, about `pixels` wide. Needs VTK and an X screen."""
+    from . import render_3d  # VTK is needed for this only
     image = render_3d.image_3d(pack, colouring.rgba(), pixels)
     height, width = image.shape[:2]
     dpi, strip, head = 100, 110, 34  # pixels for the colour bar at the right and the caption above
-    figure = plt.figure(figsize=((width + strip) / dpi, (height + head) / dpi), dpi=dpi)
-    across, up = width + strip, height + head
-    axes = figure.add_axes([0.0, 0.0, width / across, height / up])
+    width_all = max(width + strip, 560)  # a tall pack is narrow; its caption is not
+    figure = plt.figure(figsize=(width_all / dpi, (height + head) / dpi), dpi=dpi)
+    across, up = width_all, height + head
+    left = (width_all - width - strip) // 2
+    axes = figure.add_axes([left / across, 0.0, width / across, height / up])
     axes.imshow(image, interpolation="none")
     axes.axis("off")
-    colouring.bar(figure, figure.add_axes([(width + 22) / across, 0.14, 16 / across, 0.66]))
+    colouring.bar(figure, figure.add_axes([(left + width + 22) / across, 0.14, 16 / across, 0.66]))
     figure.text(12 / across, 1.0 - 10 / up, caption(pack), va="top", fontsize=11, color=INK)
-    figure.text(12 / across, 8 / up, "red: target height", fontsize=9, color=ACCENT)
+    figure.text(12 / across, 8 / up, "red: target height", fontsize=9, color=TARGET)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
+    plt.close(figure)
 
 
-def chain_lines(pack, axes, points):
-    """Lines between touching discs, as thick as the normal force."""
+def chain_lines(pack: Pack, axes: Axes, points: float) -> float:
+    """Lines between touching discs, as thick as the normal force: `points` for the mean one, which is returned [N]."""
     first, second = pack.position[pack.pairs[:, 0], :2], pack.position[pack.pairs[:, 1], :2]
     normal = second - first
     near = np.abs(normal[:, 0]) < 0.5 * pack.size[0]  # not those across a periodic side
@@ -119,8 +138,9 @@ def chain_lines(pack, axes, points):
     return typical
 
 
-def draw_2d(pack, colouring, path, pixels, chains):
-    width, asked = pack.size
+def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int, chains: bool) -> None:
+    """A picture of discs, PNG, `pixels` wide, with force chains if they are wanted and the pack has contacts."""
+    width, target = pack.size
     top = pack.top()
     dpi, strip, rim = 100, 1.15, 0.30  # inches for the colour bar and around the picture
     inches = pixels / dpi - strip - rim
@@ -140,30 +160,56 @@ def draw_2d(pack, colouring, path, pixels, chains):
     if show:
         note += f";  lines: contact forces, mean {chain_lines(pack, axes, 0.1 * points):.2g} N"
     axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)
-    axes.plot([0, width], [asked, asked], color=ACCENT, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
+    axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
     axes.set_xlim(0.0, width)
     axes.set_ylim(0.0, top)
     axes.axis("off")
     bar = [1.0 - (strip - 0.22) / across, (rim + 0.08 * high) / up, 0.16 / across, 0.84 * high / up]
     colouring.bar(figure, figure.add_axes(bar))
     figure.text(rim / across, 1.0 - 0.1 / up, caption(pack), va="top", fontsize=11, color=INK)
-    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=ACCENT)
+    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=TARGET)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
+    plt.close(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(description="Draw a pack (NAME.hdf) as a PNG picture.")
+def pictures_of(pack: Union[str, Path], pictures: Iterable[Path], *options: Any) -> str:
+    """Draws a pack in a process of its own (pictures in 3D may start it again under a virtual screen), with few colours: a
+    third of the bytes. `pictures` are the files that must then be there, `options` those of packmpi render. What went wrong, or
+    nothing."""
+    command = [sys.executable, Path(__file__).parent / "__main__.py", "render", pack, *options]
+    done = subprocess.run([str(word) for word in command], text=True, capture_output=True, check=False)
+    if done.returncode != 0:
+        return done.stderr.strip() or f"packmpi render ended with code {done.returncode}"
+    from PIL import Image   # comes with matplotlib
+    for picture in pictures:
+        Image.open(picture).quantize(200).save(picture, optimize=True)
+    return ""
+
+
+def parse(words: list[str]) -> argparse.Namespace:
+    """The options of packmpi render."""
+    parser = argparse.ArgumentParser(prog="packmpi render", description="Draw a pack (NAME.hdf) as a PNG picture.")
     parser.add_argument("pack", help="pack file, NAME.hdf")
     parser.add_argument("-o", "--output", help="picture to write (default: NAME.png beside the pack)")
-    parser.add_argument("--color", choices=["radius", "layer", "contacts", "speed"], nargs="+", default=[None],
+    parser.add_argument("--color", choices=PROPERTIES, nargs="+", default=[None],
                         help="what the colours show (default: radius, or layer if all radii are equal)")
     parser.add_argument("--size", type=int, default=1000, help="width in pixels, about (default 1000)")
     parser.add_argument("--no-chains", action="store_true", help="2D: leave out the force chains")
-    options = parser.parse_args()
+    parser.add_argument("--program", help=argparse.SUPPRESS)   # of all three tools; this one needs none
+    options = parser.parse_args(words)
     if not 100 <= options.size <= 8000:
-        fail("--size must be between 100 and 8000")
+        parser.error("--size must be between 100 and 8000")
+    return options
+
+
+def main(words: list[str]) -> None:
+    """packmpi render WORDS."""
+    options = parse(words)
     path = options.output or os.path.splitext(options.pack)[0] + ".png"
     pack = Pack(options.pack)
+    if pack.dimension == 3:
+        from . import render_3d
+        render_3d.use_virtual_screen()
     stem, ending = os.path.splitext(path)
     for color in options.color:
         colouring = Colouring(pack, color)
@@ -175,9 +221,5 @@ def main():
             else:
                 draw_2d(pack, colouring, path, options.size, not options.no_chains and color == options.color[0])
         except OSError as error:
-            fail(f"cannot write {path}: {error}")
+            raise Problem(f"cannot write {path}: {error}") from error
         print(f"{path}: {pack.count} particles by {colouring.what}")
-
-
-if __name__ == "__main__":
-    main()

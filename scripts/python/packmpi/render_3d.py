@@ -1,43 +1,50 @@
-"""The 3D half of scripts/render.py: the spheres of a pack as an image, drawn by VTK on a virtual screen."""
+"""The spheres of a pack as an image, drawn by VTK on an X screen."""
 import os
 import shutil
 import sys
+from typing import Any
 
 import numpy as np
+import vtk
 from matplotlib import colors
+from numpy.typing import NDArray
+from vtk.util import numpy_support as convert
 
-from common import ACCENT, BACKGROUND, INK, fail, missing
+from .problem import Problem
+from .read import Floats, Pack
+from .style import BACKGROUND, INK, TARGET
+
+Point = tuple[float, float, float]
+Segment = tuple[Point, Point]
+Image = NDArray[np.uint8]   # (height, width, 3), row 0 above
 
 
-def use_virtual_screen():
-    """VTK 9.1 draws on an X screen only: start again under one if there is none."""
+def use_virtual_screen() -> None:
+    """VTK 9.1 draws on an X screen only. If there is none, this process begins again under a virtual one: call it first."""
     if os.environ.get("DISPLAY"):
         return
     if not shutil.which("xvfb-run") or not shutil.which("xauth"):
-        fail("there is no X screen, and no xvfb-run and xauth to make one; install them with: scripts/setup.sh --render")
+        raise Problem("there is no X screen, and no xvfb-run and xauth to make one; on Debian: apt-get install xvfb xauth")
     sys.stdout.flush()
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 640x480x24", sys.executable] + sys.argv)
 
 
-def import_vtk():
-    try:
-        import vtk
-        from vtk.util import numpy_support
-    except ImportError as error:
-        missing(f"{error.name} (VTK)", "render")
-    return vtk, numpy_support
+def extent(pack: Pack) -> float:
+    """The longest edge [m]. What VTK sees is divided by it: its depths are made for lengths of about 1, not for micrometres."""
+    return float(max(pack.size[0], pack.size[1], pack.top()))
 
 
-def spheres_actor(vtk, convert, pack, rgba):
+def spheres_actor(pack: Pack, rgba: Floats) -> Any:
+    """The spheres as impostors: a shaded square each, no mesh."""
     points = vtk.vtkPoints()
-    points.SetData(convert.numpy_to_vtk(pack.position.astype(np.float32), deep=True))
+    points.SetData(convert.numpy_to_vtk((pack.position / extent(pack)).astype(np.float32), deep=True))
     data = vtk.vtkPolyData()
     data.SetPoints(points)
     vertices = vtk.vtkCellArray()  # the mapper draws vertices, not bare points
     every = convert.numpy_to_vtkIdTypeArray(np.arange(pack.count + 1, dtype=np.int64), deep=True)
     vertices.SetData(every, convert.numpy_to_vtkIdTypeArray(np.arange(pack.count, dtype=np.int64), deep=True))
     data.SetVerts(vertices)
-    radius = convert.numpy_to_vtk(pack.radius.astype(np.float32), deep=True)  # the mapper misreads float64
+    radius = convert.numpy_to_vtk((pack.radius / extent(pack)).astype(np.float32), deep=True)  # the mapper misreads float64
     radius.SetName("radius")
     data.GetPointData().AddArray(radius)
     paint = convert.numpy_to_vtk((255 * rgba[:, :3]).round().astype(np.uint8), deep=True)
@@ -57,7 +64,8 @@ def spheres_actor(vtk, convert, pack, rgba):
     return actor
 
 
-def lines_actor(vtk, segments, colour, thickness):
+def lines_actor(segments: list[Segment], colour: str, thickness: float) -> Any:
+    """Lines as tubes of a radius [m]."""
     points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
     for ends in segments:
         cells.InsertNextCell(2)
@@ -80,22 +88,24 @@ def lines_actor(vtk, segments, colour, thickness):
     return actor
 
 
-def frame(lx, ly, z):
+def frame(lx: float, ly: float, z: float) -> list[Segment]:
+    """A rectangle at a height."""
     return [((0, 0, z), (lx, 0, z)), ((lx, 0, z), (lx, ly, z)), ((lx, ly, z), (0, ly, z)), ((0, ly, z), (0, 0, z))]
 
 
-def container_actors(vtk, pack):
-    lx, ly, asked = pack.size
-    top = pack.top()
+def container_actors(pack: Pack) -> list[Any]:
+    """The edges of the container, and the target height."""
+    lx, ly, target = pack.size / extent(pack)
+    top = pack.top() / extent(pack)
     upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
-    thickness = 0.0020 * max(lx, ly, top)
-    return [lines_actor(vtk, frame(lx, ly, 0) + upright, INK, thickness),
-            lines_actor(vtk, frame(lx, ly, asked), ACCENT, 1.6 * thickness)]
+    thickness = 0.0020
+    return [lines_actor(frame(lx, ly, 0) + upright, INK, thickness),
+            lines_actor(frame(lx, ly, target), TARGET, 1.6 * thickness)]
 
 
-def aim(vtk, renderer, pack):
+def aim(renderer: Any, pack: Pack) -> None:
     """A camera far away, a little above, that sees two sides and the surface."""
-    corner = np.array([pack.size[0], pack.size[1], pack.top()])
+    corner = np.array([pack.size[0], pack.size[1], pack.top()]) / extent(pack)
     direction = np.array([-0.50, -1.0, 0.50])
     angle = 14.0  # degrees, of view
     distance = 0.5 * np.linalg.norm(corner) / np.sin(0.5 * np.radians(angle))
@@ -112,7 +122,7 @@ def aim(vtk, renderer, pack):
     lights.AddLightsToRenderer(renderer)
 
 
-def shade_gaps(renderer, radius):
+def shade_gaps(renderer: Any, radius: float) -> None:
     """Ambient occlusion: what lies deep between spheres is darker."""
     renderer.UseSSAOOn()
     renderer.SetSSAORadius(3.0 * radius)
@@ -121,7 +131,7 @@ def shade_gaps(renderer, radius):
     renderer.SSAOBlurOn()
 
 
-def crop(image, margin):
+def crop(image: Image, margin: int) -> Image:
     """Without the empty rim, but for `margin` pixels."""
     full = (image < 250).any(axis=2)
     rows, columns = np.where(full.any(axis=1))[0], np.where(full.any(axis=0))[0]
@@ -130,26 +140,29 @@ def crop(image, margin):
     return image[max(rows[0] - margin, 0):rows[-1] + margin, max(columns[0] - margin, 0):columns[-1] + margin]
 
 
-def image_3d(pack, rgba, pixels):
-    """RGB of the container and its spheres, at most `pixels` wide and high.
-
-    Rendered at twice the size and averaged: sphere impostors have hard edges.
-    """
-    use_virtual_screen()
-    vtk, convert = import_vtk()
+def scene_of(pack: Pack, rgba: Floats) -> Any:
+    """What VTK draws: container, spheres, camera and lights."""
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(*colors.to_rgb(BACKGROUND))
     if pack.count:
-        renderer.AddActor(spheres_actor(vtk, convert, pack, rgba))
-    for actor in container_actors(vtk, pack):
+        renderer.AddActor(spheres_actor(pack, rgba))
+    for actor in container_actors(pack):
         renderer.AddActor(actor)
-    aim(vtk, renderer, pack)
+    aim(renderer, pack)
     if pack.count:
-        shade_gaps(renderer, float(pack.radius.mean()))
+        shade_gaps(renderer, float(pack.radius.mean()) / extent(pack))
+    return renderer
+
+
+def image_3d(pack: Pack, rgba: Floats, pixels: int) -> Image:
+    """The container and its spheres, at most `pixels` wide and high, in the colours `rgba` (N, 4). Needs an X screen.
+
+    Rendered at twice the size and averaged: sphere impostors have hard edges.
+    """
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetSize(2 * pixels, 2 * pixels)
-    window.AddRenderer(renderer)
+    window.AddRenderer(scene_of(pack, rgba))
     window.Render()
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)

@@ -1,29 +1,32 @@
-#!/usr/bin/python3
 """One page on a pack, for eyes and for an archive: NAME.html, pictures and plots inside, nothing fetched from elsewhere.
 
-usage: scripts/report.py PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
+usage: packmpi report PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
 
-Facts, pictures, plots, target beside achieved, protocol, checks and provenance. Needs what scripts/setup.sh --render installs;
-a picture that cannot be drawn is left out, and the page says why. The numbers are those of the pack and of
-`packmpi analyze`; the history is NAME.steps.csv.
+Facts, pictures, plots, targets beside what was achieved, protocol, checks and provenance. A picture that cannot be drawn is left
+out, and the page says why. The numbers are those of the pack and of `packmpi analyze`; the history is NAME.steps.csv.
 """
 import argparse
 import base64
 import html
 import tempfile
 from pathlib import Path
+from typing import Any, Sequence
 
-import plot   # says what is missing
-from common import ACCENT, BACKGROUND, GOT, GRID, INK, OTHER, fail, pictures_of
 import numpy as np
-import packs
+
+from . import plot
+from .problem import Problem
+from .read import Pack
+from .render import container_size, pictures_of
+from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
+from .units import length_unit
 
 STYLE = Path(__file__).parent / "report.css"
 # What a plot's colours become on a dark page.
-DARK = {INK: "#d8dee4", GRID: "#333b43", ACCENT: "#ff8a98", GOT: "#4fc3d4", OTHER: "#7d8b99"}
+DARK = {INK: "#d8dee4", GRID: "#333b43", TARGET: "#ff8a98", ACHIEVED: "#4fc3d4", OTHER: "#7d8b99"}
 
 
-def number(value, digits=4):
+def number(value: Any, digits: int = 4) -> str:
     """A number for people: thousands apart, powers of ten beyond four places."""
     if value is None or (isinstance(value, float) and not np.isfinite(value)):
         return "–"
@@ -37,15 +40,23 @@ def number(value, digits=4):
     return f"{value:.{digits}g}".replace("-", "−")
 
 
-def quantity(value, unit="", digits=4):
+def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
+    """A number and its unit, on one line."""
     return f"{number(value, digits)}&nbsp;{unit}" if unit else number(value, digits)
 
 
-def percent(got, asked):
-    return f"{100.0 * (got / asked - 1.0):+.2f}&nbsp;%".replace("-", "−") if asked else "–"
+def percent(achieved: float, target: float) -> str:
+    """The difference, of the target."""
+    return f"{100.0 * (achieved / target - 1.0):+.2f}&nbsp;%".replace("-", "−") if target else "–"
 
 
-def table(heads, rows, label):
+def length(value: float, digits: int = 4) -> str:
+    """A length [m] in a unit that suits it."""
+    scale, unit = length_unit(value)
+    return quantity(scale * value, unit, digits)
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> str:
     """`rows` of ready HTML; the first cell of a row is its head. A row of one cell parts the table."""
     out = [f'<div class="wide"><table aria-label="{label}"><thead><tr>']
     out += [f"<th>{head}</th>" for head in heads] + ["</tr></thead><tbody>"]
@@ -57,33 +68,47 @@ def table(heads, rows, label):
     return "".join(out) + "</tbody></table></div>"
 
 
-def listed(pairs):
+def listed(pairs: Sequence[tuple[str, str]]) -> str:
+    """Names and values."""
     return "<dl>" + "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in pairs) + "</dl>"
 
 
-def section(name, title, *parts):
+def section(name: str, title: str, *parts: str) -> str:
+    """A part of the page, with an anchor."""
     return f'<section id="{name}"><h2>{title}</h2>{"".join(part for part in parts if part)}</section>'
 
 
-def inline(path, kind, words):
+def inline(path: Path, kind: str, words: str) -> str:
+    """An image as part of the page; `words` are for those who do not see it."""
     data = base64.b64encode(Path(path).read_bytes()).decode()
     return f'<img alt="{html.escape(words)}" src="data:image/{kind};base64,{data}">'
 
 
 # --- what the page says ---
 
-def facts(pack, analysis):
+def facts(pack: Pack, analysis: dict[str, Any]) -> str:
     """The few numbers everybody looks for, large."""
-    got = pack.summary
+    made = pack.summary
     tiles = [(number(pack.count), pack.noun), (f"{pack.phi_bulk:.4f}", "solid fraction of the bulk"),
-             (f"{got['coordination']:.2f}", "touching neighbours"), (f"{got['height']:.4g} m", f"high; {pack.size[-1]:g} m asked"),
+             (f"{1.0 - pack.phi_bulk:.4f}", "porosity of the bulk"),
+             (f"{made['coordination']:.2f}", "coordination number"),
+             (length(made["height"]), f"high; target {length(pack.size[-1])}"),
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
-             (f"{got['floor_force'] / got['weight']:.3f}" if got["weight"] else "–", "of the weight on the floor")]
+             (f"{made['floor_force'] / made['weight']:.3f}" if made["weight"] else "–", "of the weight on the floor")]
     tiles = [f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles]
     return f'<div class="tiles">{"".join(tiles)}</div>'
 
 
-def pictures(pack, folder, pixels):
+def warning(pack: Pack) -> str:
+    """What keeps the pack from being what was wanted, or nothing."""
+    if pack.summary["reached"]:
+        return ""
+    return (f'<p class="warning" role="alert">The pack is lower than its target: {length(pack.summary["height"])} of '
+            f'{length(pack.size[-1])}, stopped by {html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the '
+            'target height are too small.</p>')
+
+
+def pictures(pack: Pack, folder: Path, pixels: int) -> str:
     """The pack from outside: sizes, or layers if they are equal; and contacts. Discs with their force chains."""
     first, words = ("radius", "Coloured by size") if np.ptp(pack.radius) > 0.0 else ("layer", "Coloured by layer of insertion")
     notes = ""
@@ -91,7 +116,7 @@ def pictures(pack, folder, pixels):
         words += ", with force chains: lines as thick as the contact forces"
     elif pack.dimension == 2:
         notes = '<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>'
-    shown = {folder / f"picture.{first}.png": words, folder / "picture.contacts.png": "Coloured by the number of touching neighbours"}
+    shown = {folder / f"picture.{first}.png": words, folder / "picture.contacts.png": "Coloured by the coordination number"}
     wrong = pictures_of(pack.path, shown, "-o", folder / "picture.png", "--size", pixels, "--color", first, "contacts")
     if wrong:
         return f'<p class="note">No pictures: {html.escape(wrong)}</p>'
@@ -102,7 +127,7 @@ def pictures(pack, folder, pixels):
 
 CAPTIONS = {
     "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
-    "sizes": "Sizes asked for (dashed) and got, as sieves would show them.",
+    "sizes": "Target sizes (dashed) and achieved ones, as sieves would show them.",
     "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
     "settling": "How the layers settled; energies are those of the particles that move."}
 
@@ -112,7 +137,8 @@ MISSING = {
     "settling": "No history: the time series NAME.steps.csv is not beside the pack."}
 
 
-def plots(pack, analysis, folder):
+def plots(pack: Pack, analysis: dict[str, Any], folder: Path) -> str:
+    """All plots that there are, and why the others are not."""
     drawn, notes = [], []
     for name, words in CAPTIONS.items():
         path = folder / f"{name}.svg"
@@ -124,7 +150,7 @@ def plots(pack, analysis, folder):
     return f'<div class="pair">{"".join(drawn)}</div>{"".join(notes)}'
 
 
-def adapt(path):
+def adapt(path: Path) -> None:
     """Lets the plot follow the reader's choice of light or dark."""
     text = path.read_text()
     light, dark = [], []
@@ -138,63 +164,76 @@ def adapt(path):
     path.write_text(text[:start] + style + text[start:])
 
 
-def comparison(pack, analysis):
-    got, layers = pack.summary, pack.layers
+def comparison(pack: Pack, analysis: dict[str, Any]) -> str:
+    """Targets beside what was achieved."""
+    made, inserted = pack.summary, float(np.mean(pack.layers["achieved_fraction"]))
+    scale, unit = length_unit(made["target_height"])
     rows = [["The pack"],
             ["particles", "–", number(pack.count), "–"],
-            ["height [m]", number(got["target_height"]), number(got["height"], 5),
-             percent(got["height"], got["target_height"])],
-            ["φ of a layer when inserted", number(got["target_fraction"]),
-             number(float(np.mean(layers["achieved_fraction"])), 5),
-             percent(float(np.mean(layers["achieved_fraction"])), got["target_fraction"])],
+            [f"height [{unit}]", number(scale * made["target_height"]), number(scale * made["height"], 5),
+             percent(made["height"], made["target_height"])],
+            ["φ of a layer when inserted", number(made["target_fraction"]), number(inserted, 5),
+             percent(inserted, made["target_fraction"])],
             ["φ below the target height", "–", f"{pack.phi:.4f}", "–"],
-            ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"]]
+            ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"],
+            ["porosity of the bulk, 1 − φ", "–", f"{1.0 - pack.phi_bulk:.4f}", "–"],
+            ["void ratio of the bulk, (1 − φ) / φ", "–", number((1.0 - pack.phi_bulk) / pack.phi_bulk if pack.phi_bulk else None), "–"]]
     for kind, match in analysis["sizes"].items():
-        asked, there = match["target"], match["achieved"]
-        rows.append([f"Diameters by {kind}"])
-        rows += [[f"D<sub>{name[1:]}</sub> [mm]", number(1000.0 * asked[name]), number(1000.0 * there[name]),
-                  percent(there[name], asked[name])] for name in asked if name.startswith("d")]
-        rows += [[words, number(asked[name]), number(there[name]), percent(there[name], asked[name])]
-                 for name, words in (("cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>"),
-                                     ("cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)"))]
-        rows.append(["Kolmogorov distance", "–", number(match["distance"], 3), "–"])
+        rows += size_rows(kind, match, 2.0 * pack.radius.max())
     return table(["", "target", "achieved", "difference"], rows, "target and achieved")
 
 
-def protocol(pack):
-    got, scene = pack.summary, pack.scene()
+def size_rows(kind: str, match: dict[str, Any], largest: float) -> list[list[str]]:
+    """Rows of the diameters by number or mass, in a unit that suits the largest [m]."""
+    target, there = match["target"], match["achieved"]
+    scale, unit = length_unit(largest)
+    rows = [[f"Diameters by {kind}"]]
+    rows += [[f"D<sub>{name[1:]}</sub> [{unit}]", number(scale * target[name]), number(scale * there[name]),
+              percent(there[name], target[name])] for name in target if name.startswith("d")]
+    rows += [[words, number(target[name]), number(there[name]), percent(there[name], target[name])]
+             for name, words in (("cu", "C<sub>u</sub> = D<sub>60</sub> / D<sub>10</sub>"),
+                                 ("cc", "C<sub>c</sub> = D<sub>30</sub>² / (D<sub>10</sub> D<sub>60</sub>)"))]
+    return rows + [["Kolmogorov distance", "–", number(match["distance"], 3), "–"]]
+
+
+def protocol(pack: Pack) -> str:
+    """How the pack was made, as far as its numbers depend on it."""
+    made, scene = pack.summary, pack.scene()
     dynamics, layers = scene["dynamics"], scene["layers"]
-    window = dynamics.get("window", 0)
+    window, settled = dynamics.get("window", 0), dynamics.get("stop") == "settled"
     return listed([
-        ("time step", quantity(got["time_step"], "s", 6)),
-        ("layers", f"{len(pack.layers['inserted'])} of {quantity(layers['thickness'], 'm')}"),
-        ("duration of a layer", f"{quantity(layers['duration'], 's')} at most"
-         if dynamics.get("stop") == "settled" else quantity(layers["duration"], "s")),
+        ("time step", quantity(made["time_step"], "s", 6)),
+        ("layers", f"{len(pack.layers['inserted'])} of {length(layers['thickness'])}"),
+        ("duration of a layer", quantity(layers["duration"], "s") + (" at most" if settled else "")),
         ("window", f"the {number(window)} newest layers move" if window else "none: all move"),
-        ("relaxation", f"{number(got['relaxations'])}, {number(got['relaxation_steps'])} steps" if got["relaxations"] else "none"),
-        ("simulated", f"{quantity(got['duration'], 's')} in {number(got['steps'])} steps"),
+        ("final relaxation",
+         f"{number(made['relaxations'])}, {number(made['relaxation_steps'])} steps" if made["relaxations"] else "none"),
+        ("simulated", f"{quantity(made['duration'], 's')} in {number(made['steps'])} steps"),
         ("gravity", quantity(scene["jamming"]["gravity"], "m/s²")),
         ("friction, damping", f"{number(scene['contact']['friction'])}, {number(scene['contact']['damping_ratio'])} of critical"),
         ("rotation", "yes" if dynamics.get("rotation", True) else "no"),
-        ("ended by", html.escape(got["stop_reason"])),
-        ("compaction rate left", f"{quantity(got['compaction_rate'], '1/s', 3)} of φ<sub>bulk</sub>")])
+        ("ended by", html.escape(made["stop_reason"])),
+        ("compaction rate left", f"{quantity(made['compaction_rate'], '1/s', 3)} of φ<sub>bulk</sub>")])
 
 
-def layer_table(pack):
+def layer_table(pack: Pack) -> str:
+    """A row for each layer."""
     columns = pack.layers
     rows = [[str(k + 1), number(columns["inserted"][k]), number(columns["total"][k]), number(columns["height"][k]),
              number(columns["duration"][k]), number(columns["kinetic_per_mgd"][k], 3), number(columns["max_overlap"][k], 3),
              f"{columns['coordination'][k]:.2f}"] for k in range(len(columns["inserted"]))]
     heads = ["layer", "inserted", "in all", "height [m]", "time [s]", "kinetic energy / mgd", "largest overlap / r",
-             "neighbours"]
+             "coordination"]
     return f"<details><summary>Layer by layer</summary>{table(heads, rows, 'layers')}</details>"
 
 
-def verdict(bad):
+def verdict(bad: bool) -> str:
+    """Whether a check is met."""
     return '<span class="bad">no</span>' if bad else '<span class="good">yes</span>'
 
 
-def checks(pack):
+def checks(pack: Pack) -> str:
+    """What the run has verified of its pack."""
     audit = pack.audit
     rows = [["all inserted particles are there", f"{number(audit['found'])} of {number(audit['expected'])}", verdict(audit["lost"])],
             ["all numbers are finite", f"{number(audit['non_finite'])} are not", verdict(audit["non_finite"])],
@@ -206,7 +245,7 @@ def checks(pack):
     return table(["check", "found", "met"], rows, "checks")
 
 
-def ledger(pack):
+def ledger(pack: Pack) -> str:
     """Where the energy of the particles that moved last has gone."""
     steps = pack.steps()
     if not steps or "dissipated" not in steps:
@@ -216,7 +255,8 @@ def ledger(pack):
     return table(["energy of the moving particles at the end", ""], rows, "energy ledger")
 
 
-def provenance(pack):
+def provenance(pack: Pack) -> str:
+    """Version, seed, scene, machine."""
     made = pack.provenance
     scene = html.escape(made["effective_input"])
     return listed([
@@ -229,17 +269,18 @@ def provenance(pack):
     ]) + f"<details><summary>The scene with every default: a scene file itself</summary><pre>{scene}</pre></details>"
 
 
-def page(pack, analysis, pixels):
-    size = " × ".join(f"{length:g}" for length in pack.size)
+def page(pack: Pack, analysis: dict[str, Any], pixels: int) -> str:
+    """The whole page; pictures are about `pixels` wide."""
+    container = container_size(pack).replace("x", "×")
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         body = [
-            f"<header><h1>{html.escape(pack.name)}</h1><p>{number(pack.count)} {pack.noun} in {size} m, "
+            f"<header><h1>{html.escape(pack.name)}</h1><p>{number(pack.count)} {pack.noun} in {container}, "
             f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
-            facts(pack, analysis), pictures(pack, folder, pixels),
+            warning(pack), facts(pack, analysis), pictures(pack, folder, pixels),
             section("plots", "What it is like", plots(pack, analysis, folder)),
-            section("target", "Target and achieved", comparison(pack, analysis),
-                    '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the asked and the got curve.</p>'),
+            section("targets", "Target and achieved", comparison(pack, analysis),
+                    '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the target and the achieved curve.</p>'),
             section("protocol", "Protocol", protocol(pack), layer_table(pack)),
             section("checks", "Checks", checks(pack), ledger(pack)),
             section("provenance", "Provenance", provenance(pack))]
@@ -263,24 +304,21 @@ def page(pack, analysis, pixels):
 """
 
 
-def main():
-    parser = argparse.ArgumentParser(description="Write one page, HTML, on a pack (NAME.hdf).")
+def main(words: list[str]) -> None:
+    """packmpi report WORDS."""
+    parser = argparse.ArgumentParser(prog="packmpi report", description="Write one page, HTML, on a pack (NAME.hdf).")
     parser.add_argument("pack", help="pack file, NAME.hdf")
     parser.add_argument("-o", "--output", type=Path, help="page to write (default: NAME.html beside the pack)")
-    parser.add_argument("--program", help="packmpi (default: build/packmpi, or the one in PATH)")
+    parser.add_argument("--program", help="packmpi, to analyze the pack (default: this one)")
     parser.add_argument("--size", type=int, default=700, help="width of the pictures in pixels, about (default 700)")
-    options = parser.parse_args()
-    pack = packs.Pack(options.pack)
+    options = parser.parse_args(words)
+    pack = Pack(options.pack)
     if pack.count == 0:
-        fail(f"{options.pack} has no particles")
-    path = options.output or pack.path.with_suffix(".html")
+        raise Problem(f"{options.pack} has no particles")
+    path: Path = options.output or pack.path.with_suffix(".html")
     text = page(pack, pack.analysis(options.program), options.size)
     try:
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
     except OSError as error:
-        fail(f"cannot write {path}: {error}")
+        raise Problem(f"cannot write {path}: {error}") from error
     print(f"{path}: {pack.count} particles, {len(text) / 1024:.0f} kB")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,7 @@
 """Shows a pack in ParaView (5.11 or newer) as spheres of the right radius, coloured by a property.
 
 usage: in ParaView: open NAME.hdf, Apply, then Tools > Python Shell > Run Script, this file; or, without a window,
-       pvpython scripts/show_in_paraview.py NAME.hdf [PROPERTY] [picture.png]
+       pvpython show_in_paraview.py NAME.hdf [PROPERTY] [picture.png]
 PROPERTY: radius, layer, contacts, id (default: layer). With a picture's name it is drawn.
 """
 import os
@@ -41,7 +41,7 @@ def show_spheres(pack, color):
 def main(words):
     pack = pack_at(words[0]) if words else GetActiveSource()
     if pack is None:
-        raise SystemExit("open a pack first, or name it: pvpython scripts/show_in_paraview.py NAME.hdf")
+        raise SystemExit("open a pack first, or name it: pvpython show_in_paraview.py NAME.hdf")
     view = show_spheres(pack, words[1] if len(words) > 1 else "layer")
     if len(words) > 2:
         SaveScreenshot(words[2], view, ImageResolution=[1200, 900])

@@ -1,0 +1,15 @@
+# The Python package of render, plot and report (scripts/python/packmpi). Installed where Python 3 of this machine looks below a
+# prefix as /usr/local, so that "import packmpi" finds it; for the program in the build folder a link stands beside it.
+find_program(PACKMPI_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+set(place share/packmpi/python)
+if(PACKMPI_PYTHON)
+  execute_process(COMMAND ${PACKMPI_PYTHON} -c "import sys, sysconfig
+print('lib/python%d.%d/' % sys.version_info[:2] + sysconfig.get_path('purelib').split('/')[-1])"
+    OUTPUT_VARIABLE found RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT failed)
+    set(place ${found})
+  endif()
+endif()
+set(PACKMPI_PYTHON_DIR ${place} CACHE STRING "folder of the installed Python package, below the prefix")
+file(RELATIVE_PATH PACKMPI_PYTHON_FROM_PROGRAM /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${PACKMPI_PYTHON_DIR})
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/scripts/python ${PROJECT_BINARY_DIR}/python SYMBOLIC)

@@ -1,0 +1,7 @@
+"""Colours of all pictures and plots."""
+INK = "#222222"
+BACKGROUND = "#ffffff"
+GRID = "#e5e5e5"
+TARGET = "#d1495b"
+ACHIEVED = "#00798c"
+OTHER = "#8d99ae"

@@ -1,0 +1,148 @@
+"""The Python package: sizes by hand, a pack made here, the command line without what it needs. usage: python3 -m unittest"""
+import contextlib
+import io
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+    import matplotlib  # noqa: F401
+    import numpy as np
+except ImportError as error:
+    print(f"skipped: the Python package {error.name} is missing (scripts/setup.sh --plots)")
+    sys.exit(77)
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "python"
+sys.path.insert(0, str(FOLDER))
+
+from packmpi import Pack, Problem, __main__ as command, sizes, units  # noqa: E402
+
+
+def make_pack(path, **attributes):
+    """Two discs, the smallest file that is a pack."""
+    with h5py.File(path, "w") as file:
+        file.attrs["format"] = "packmpi-pack"
+        particles = file.create_group("particles")
+        particles["position"] = [[0.1, 0.1, 0.0], [0.3, 0.15, 0.0]]
+        particles["radius"] = [0.1, 0.15]
+        particles["velocity"] = [[3.0, 4.0, 0.0], [0.0, 0.0, 0.0]]
+        particles["layer"] = np.array([0, 1], np.int32)
+        particles["contacts"] = np.array([0, 0], np.int32)
+        summary = file.create_group("summary")
+        summary.attrs.update({"size": [0.5, 0.2], "dimension": 2, "phi": 0.5, "phi_bulk": 0.6, **attributes})
+        summary.create_group("audit")
+        summary.create_group("layers")["inserted"] = [1, 1]
+        file.create_group("provenance").attrs["effective_input"] = np.bytes_(b"seed = 7\n[layers]\nduration = 0.5\n")
+
+
+class Packs(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.addCleanup(self.place.cleanup)
+        self.path = pathlib.Path(self.place.name) / "two.hdf"
+
+    def test_what_the_file_says(self):
+        make_pack(self.path)
+        pack = Pack(self.path)
+        self.assertEqual((pack.count, pack.noun, pack.name), (2, "discs", "two"))
+        np.testing.assert_array_equal(pack.speed, [5.0, 0.0])
+        self.assertAlmostEqual(pack.top(), 0.3)   # above the target of 0.2
+        self.assertEqual(pack.scene()["layers"]["duration"], 0.5)   # a text of bytes
+        self.assertEqual(pack.layers, {"inserted": [1, 1]})
+        self.assertIsNone(pack.pairs)
+        self.assertEqual(pack.steps(), {})
+
+    def test_history_has_its_columns(self):
+        make_pack(self.path)
+        self.path.with_suffix(".steps.csv").write_text("step,time [s],top [m]\n0,0.0,0.1\n5,0.5,0.2\n")
+        steps = Pack(self.path).steps()
+        np.testing.assert_array_equal(steps["time"], [0.0, 0.5])
+        np.testing.assert_array_equal(steps["top"], [0.1, 0.2])
+
+    def test_no_pack(self):
+        with self.assertRaisesRegex(Problem, "cannot read"):
+            Pack(self.path)
+        with h5py.File(self.path, "w") as file:
+            file.attrs["format"] = "another"
+        with self.assertRaisesRegex(Problem, "is not a pack of packmpi"):
+            Pack(self.path)
+        with h5py.File(self.path, "w") as file:
+            file.attrs["format"] = "packmpi-pack"
+        with self.assertRaisesRegex(Problem, "is incomplete"):
+            Pack(self.path)
+
+
+class Sizes(unittest.TestCase):
+    def test_two_radii(self):
+        """Half of the mass in radius 1, half in 2: eight small ones for a large one."""
+        r, number, mass = sizes.target_curve({"distribution": "bidisperse", "small": 1.0, "large": 2.0, "large_share": 0.5,
+                                              "weighting": "mass"})
+        np.testing.assert_array_equal(r, [1.0, 1.0, 2.0, 2.0])
+        np.testing.assert_allclose(mass, [0.0, 0.5, 0.5, 1.0])
+        np.testing.assert_allclose(number, [0.0, 8.0 / 9.0, 8.0 / 9.0, 1.0])
+
+    def test_uniform(self):
+        """Uniform by number from 1 to 3: the mass up to r is (r^4 - 1) / 80."""
+        r, number, mass = sizes.target_curve({"distribution": "uniform", "min": 1.0, "max": 3.0, "weighting": "number"})
+        np.testing.assert_allclose(np.interp(2.0, r, number), 0.5, atol=1e-6)
+        np.testing.assert_allclose(np.interp(2.0, r, mass), 15.0 / 80.0, atol=1e-5)
+
+    def test_grading_is_of_diameters(self):
+        radius = {"distribution": "grading", "weighting": "mass", "diameter_curve": [[0.02, 0.0], [0.04, 100.0]], "interpolation": "linear"}
+        r, _, mass = sizes.target_curve(radius)
+        self.assertEqual((r[0], r[-1]), (0.01, 0.02))
+        self.assertAlmostEqual(np.interp(0.015, r, mass), 0.5)
+        self.assertAlmostEqual(sizes.target_curve({**radius, "keep_percent": [50.0, 100.0]})[0][0], 0.015)
+
+    def test_achieved(self):
+        r, number, mass = sizes.achieved_curve(np.array([2.0, 1.0]))
+        np.testing.assert_array_equal(r, [1.0, 2.0])
+        np.testing.assert_allclose(number, [0.5, 1.0])
+        np.testing.assert_allclose(mass, [1.0 / 9.0, 1.0])
+
+    def test_units(self):
+        for length, factor, name in ((2.0, 1.0, "m"), (0.02, 1e3, "mm"), (2e-5, 1e6, "µm"), (2e-8, 1e9, "nm")):
+            self.assertEqual(units.length_unit(length), (factor, name))
+
+
+class CommandLine(unittest.TestCase):
+    def start(self, *words, cwd=None, **environment):
+        return subprocess.run([sys.executable, FOLDER / "packmpi" / "__main__.py", *words], text=True, capture_output=True, check=False,
+                              cwd=cwd, env={**os.environ, **environment})
+
+    def test_usage(self):
+        self.assertEqual(self.start().returncode, 2)
+        self.assertEqual(self.start("paint", "x.hdf").returncode, 2)
+
+    def test_one_line_for_what_is_missing(self):
+        """A package that is not installed is named with Debian's name for it; so is a file that is not there."""
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "h5py.py").write_text("raise ModuleNotFoundError(\"No module named 'h5py'\", name='h5py')\n")
+            done = self.start("plot", "x.hdf", PYTHONPATH=folder)
+        self.assertEqual(done.returncode, 5)
+        self.assertRegex(done.stderr, r"^packmpi plot: the Python package h5py is missing for .*apt-get install python3-h5py .*\n$")
+        done = self.start("plot", "/no/such.hdf")
+        self.assertEqual(done.returncode, 5)
+        self.assertRegex(done.stderr, r"^packmpi plot: cannot read /no/such.hdf: .*\n$")
+
+    def test_the_folder_one_stands_in_is_not_searched(self):
+        """A stranger's h5py.py beside the pack is not run."""
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "h5py.py").write_text("raise SystemExit('a stranger ran')\n")
+            make_pack(pathlib.Path(folder) / "two.hdf", reached=1)
+            done = self.start("render", "two.hdf", "--size", "400", cwd=folder)
+        self.assertEqual((done.returncode, done.stdout), (0, "two.png: 2 particles by radius\n"), done.stderr)
+
+    def test_words_name_the_command(self):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said), self.assertRaises(SystemExit):
+            command.run(["report"])
+        self.assertIn("usage: packmpi report", said.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()
