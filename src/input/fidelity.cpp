@@ -129,8 +129,8 @@ Protocol in_space(Input in, const Spatial& rule) {
   return p;
 }
 
-/// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the rotation:
-/// with it particles roll past each other as well.
+/// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the
+/// rotation: with it particles roll past each other as well.
 Protocol draft(const Input& in) {
   if (flat(in))
     return in_plane(in, {.duration = 0.9, .speed = 0.5, .window = 5, .relaxation = 0.4, .least_relaxation = 1.0});

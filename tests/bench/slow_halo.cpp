@@ -1,6 +1,6 @@
-// To be preloaded (scripts/study/halo.py): ghosts seem to travel for PACKMPI_FLIGHT seconds. A persistent request, as PetscSF
-// makes them, does not end sooner than that after it was started. Both ends of a message start it at about the same
-// time, so that is its flight. Reductions and parcels are as fast as they are.
+// To be preloaded (scripts/study/halo.py): ghosts seem to travel for PACKMPI_FLIGHT seconds. A persistent request, as
+// PetscSF makes them, does not end sooner than that after it was started. Both ends of a message start it at about the
+// same time, so that is its flight. Reductions and parcels are as fast as they are.
 #include <mpi.h>
 
 #include <cstdlib>

@@ -96,7 +96,7 @@ endfunction()
 
 list(LENGTH modules place_of_main)
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/*)
-list(FILTER files EXCLUDE REGEX "CMakeLists\\.txt$")
+list(FILTER files EXCLUDE REGEX "CMakeLists\\.txt$|^src/modules\\.txt$")
 list(SORT files)
 foreach(file IN LISTS files)
   string(REGEX REPLACE "^src/([^/]*)/.*" "\\1" module "${file}")
