@@ -7,8 +7,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "cli/command_docs.hpp"
@@ -24,6 +27,35 @@ constexpr const char* about =
     "packmpi: dense random packs of spheres for DEM, layer by layer, on any number of MPI ranks.\n"
     "\"packmpi SCENE.toml\" is \"packmpi run SCENE.toml\"; \"packmpi COMMAND --help\" tells a command's options.";
 
+constexpr std::int64_t most_particles = std::int64_t{1} << 40;  // as scenes may have
+constexpr std::int64_t most_ranks = 1 << 24;
+constexpr std::int64_t most_steps = 1'000'000'000'000'000;  // 30 years at a microsecond each
+constexpr double least_hours = 1e-9, most_hours = 1e6;
+
+// All of `text` as a number; none if it is not one.
+template <class Number>
+std::optional<Number> read_number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+// An option that is a number in [least, most]; a refusal is one line that names the option, the word and the range.
+template <class Number, class Take>
+CLI::Option* add_number(CLI::App& app, const std::string& name, Number least, Number most, Take take,
+                        const std::string& text) {
+  return app.add_option_function<std::string>(
+      name,
+      [name, least, most, take](const std::string& word) {
+        const std::optional<Number> value = read_number<Number>(word);
+        if (value && *value >= least && *value <= most) return take(*value);  // not NaN
+        throw CLI::ValidationError(name, fmt::format("\"{}\" is no {} from {:g} to {:g}", word,
+                                                     std::is_integral_v<Number> ? "whole number" : "number",
+                                                     static_cast<double>(least), static_cast<double>(most)));
+      },
+      text);
+}
+
 std::string version_text() { return fmt::format("packmpi {} ({}, {})\n", version(), git_id(), compiler()); }
 
 void declare_scene(CLI::App& app, Request& request) {
@@ -32,10 +64,10 @@ void declare_scene(CLI::App& app, Request& request) {
       ->allow_extra_args(false)
       ->type_name("KEY.PATH=VALUE");
   // Declared after --set, so it is added behind its values, and wins.
-  app.add_option_function<std::uint64_t>(
-         "--seed",
-         [&request](std::uint64_t seed) { request.run.overrides.set.push_back(fmt::format("seed={}", seed)); },
-         "the same as --set seed=N")
+  add_number(
+      app, "--seed", std::int64_t{0}, std::numeric_limits<std::int64_t>::max(),
+      [&request](std::int64_t seed) { request.run.overrides.set.push_back(fmt::format("seed={}", seed)); },
+      "the same as --set seed=N")
       ->type_name("N");
 }
 
@@ -47,11 +79,13 @@ void declare_run(CLI::App& app, Request& request) {
   app.add_flag("--force", request.run.force, "replace outputs that exist");
   app.add_option("--restart", request.run.restart, "go on from a checkpoint: auto (the newest valid one) or its file")
       ->type_name("auto|FILE");
-  app.add_option("--max-hours", request.run.max_hours, "write a checkpoint and end (code 75) before so much wall time")
-      ->check(CLI::PositiveNumber)
+  add_number(
+      app, "--max-hours", least_hours, most_hours, [&request](double hours) { request.run.max_hours = hours; },
+      "write a checkpoint and end (code 75) before so much wall time")
       ->type_name("H");
-  app.add_option("--max-steps", request.run.max_steps, "the same after so many time steps")
-      ->check(CLI::PositiveNumber)
+  add_number(
+      app, "--max-steps", std::int64_t{1}, most_steps, [&request](std::int64_t n) { request.run.max_steps = n; },
+      "the same after so many time steps")
       ->type_name("N");
   app.add_option_function<std::string>(
          "--log-format",
@@ -136,21 +170,16 @@ void declare_convert(CLI::App& app, Request& request) {
   app.footer("Formats:\n" + lines(format_words()));
 }
 
-constexpr std::int64_t most_particles = std::int64_t{1} << 40;  // as scenes may have
-constexpr int most_ranks = 1 << 24;
-
 // A length above 0 [m]: "0.2", or "20 cm".
 std::optional<double> read_length(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool plain = error == std::errc() && end == text.data() + text.size();
-  const std::optional<double> length = plain ? value : input::parse_scalar(text, input::length).value;
+  const std::optional<double> plain = read_number<double>(text);
+  const std::optional<double> length = plain ? plain : input::parse_scalar(text, input::length).value;
   return length && *length > 0.0 && std::isfinite(*length) ? length : std::nullopt;
 }
 
 // "L,B" or "L", each a length or "open".
 void read_sides(const std::string& text, std::vector<std::optional<double>>& sides) {
-  std::istringstream words(text);
+  std::istringstream words(text + ",");  // a last side that is empty is one, too
   for (std::string word; std::getline(words, word, ',');) {
     const bool open = word == "open";
     sides.push_back(open ? std::nullopt : read_length(word));
@@ -163,8 +192,9 @@ void read_sides(const std::string& text, std::vector<std::optional<double>>& sid
 void declare_estimate(CLI::App& app, Request& request) {
   declare_scene(app, request);
   forecast::Question& question = request.question;
-  app.add_option("--particles", question.particles, "of the pack; then its height is found, or its floor")
-      ->check(CLI::Range(std::int64_t{1}, most_particles))
+  add_number(
+      app, "--particles", std::int64_t{1}, most_particles, [&question](std::int64_t n) { question.particles = n; },
+      "of the pack; then its height is found, or its floor")
       ->type_name("N");
   app.add_option_function<std::string>(
          "--height",
@@ -180,11 +210,14 @@ void declare_estimate(CLI::App& app, Request& request) {
          "--floor", [&question](const std::string& text) { read_sides(text, question.sides); },
          "sides of the floor, instead of the scene's [m]; one that is the word open is found")
       ->type_name("L,B");
-  app.add_option("--fraction", question.fraction, "solid fraction of the bed, instead of the estimate")
-      ->check(CLI::Range(0.01, 0.99))
+  add_number(
+      app, "--fraction", 0.01, 0.99, [&question](double fraction) { question.fraction = fraction; },
+      "solid fraction of the bed, instead of the estimate")
       ->type_name("F");
-  app.add_option("--ranks", question.ranks, "that the run is to have; without it, those that are here")
-      ->check(CLI::Range(1, most_ranks))
+  add_number(
+      app, "--ranks", std::int64_t{1}, most_ranks,
+      [&question](std::int64_t n) { question.ranks = static_cast<int>(n); },
+      "that the run is to have; without it, those that are here")
       ->type_name("N");
   app.add_flag_callback(
       "--no-probe", [&question] { question.probe = false; }, "do not try how fast this machine is: no time is told");

@@ -13,7 +13,8 @@ std::optional<Rhythm> rhythm_of(std::string_view every) {
   if (unit == "steps" || unit == "step") {
     std::int64_t steps = 0;
     const auto read = std::from_chars(digits.data(), end, steps);
-    if (read.ec != std::errc{} || read.ptr != end || steps < 1) return std::nullopt;
+    constexpr std::int64_t most = 1'000'000'000'000'000;  // a run is not that long, and sums with it do not overflow
+    if (read.ec != std::errc{} || read.ptr != end || steps < 1 || steps > most) return std::nullopt;
     return Rhythm{.steps = steps};
   }
   const double factor = unit == "s" ? 1.0 : unit == "min" ? 60.0 : unit == "h" ? 3600.0 : 0.0;

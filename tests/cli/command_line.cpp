@@ -82,6 +82,36 @@ TEST(CommandLine, EstimateAsksForWhatIsOpen) {
   }
 }
 
+// Each is refused in one short line that names the option and the word.
+TEST(CommandLine, NumbersAreNumbers) {
+  for (const char* command : {"run", "estimate"}) {
+    const bool run = std::string(command) == "run";
+    const std::vector<const char*> names =
+        run ? std::vector<const char*>{"--max-hours", "--max-steps", "--seed"}
+            : std::vector<const char*>{"--particles", "--height", "--floor", "--fraction", "--ranks", "--seed"};
+    for (const char* name : names) {
+      for (const char* word :
+           {"nan", "-nan", "inf", "-inf", "abc", "1e999", "99999999999999999999", "-1", "0x10", "1 2", ""}) {
+        if (std::string(word) == "99999999999999999999" && std::string(name) != "--max-steps") continue;
+        const auto parsed = parse({command, "a.toml", name, word});
+        const Reply* reply = std::get_if<Reply>(&parsed);
+        ASSERT_NE(reply, nullptr) << name << " " << word << " is taken";
+        EXPECT_EQ(reply->code, 2) << name << " " << word;
+        const std::string line = reply->text.substr(0, reply->text.find('\n'));
+        EXPECT_LT(line.size(), 120U) << line;
+        EXPECT_NE(line.find(name), std::string::npos) << line;
+      }
+    }
+  }
+  EXPECT_EQ(std::get<Reply>(parse({"a.toml", "--max-steps", "9223372036854775807"})).code, 2);
+  EXPECT_EQ(std::get<Reply>(parse({"a.toml", "--max-steps", "0"})).code, 2);
+  EXPECT_EQ(std::get<Reply>(parse({"a.toml", "--max-hours", "0"})).code, 2);
+  EXPECT_EQ(std::get<Request>(parse({"a.toml", "--max-steps", "1000000000000000"})).run.max_steps, 1000000000000000);
+  EXPECT_EQ(std::get<Request>(parse({"a.toml", "--max-hours", "0.5"})).run.max_hours, 0.5);
+  EXPECT_EQ(std::get<Reply>(parse({"init", "--dimension", "nan"})).code, 2);
+  EXPECT_EQ(std::get<Reply>(parse({"convert", "a.hdf", "--to", "csv", "--replicate", "99999999999,1"})).code, 2);
+}
+
 TEST(CommandLine, HelpAndVersionAreAnswersNotErrors) {
   const auto help = std::get<Reply>(parse({"--help"}));
   EXPECT_EQ(help.code, 0);
