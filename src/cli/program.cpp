@@ -44,7 +44,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
-        std::int64_t{nx} * ny,
+        scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
     fmt::print("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
     fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);

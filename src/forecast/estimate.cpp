@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "forecast/probe.hpp"
-#include "geometry/columns.hpp"
 #include "geometry/volume.hpp"
 #include "input/units.hpp"
 #include "pack/checkpoint.hpp"
@@ -16,6 +15,7 @@
 #include "run/record.hpp"
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
+#include "scene/ownership.hpp"
 
 namespace packmpi::forecast {
 namespace {
@@ -148,14 +148,7 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
   return scene;
 }
 
-// Ranks the decomposition has columns for, and the share of copies a rank of `ranks` holds beside its own particles.
-int ranks_at_most(const scene::Scene& scene) {
-  const auto [nx, ny] = geometry::ColumnGrid(scene.box, scene.column_width()).counts();
-  const bool slab = scene.in.parallel.decomposition == input::Decomposition::slab;
-  if (slab && scene.box.dimension == 3) return scene.box.size[1] > scene.box.size[0] ? ny : nx;
-  return static_cast<int>(std::min<std::int64_t>(std::int64_t{nx} * ny, 1 << 30));
-}
-
+// The share of copies that a rank of `ranks` holds beside its own particles.
 double ghost_share(const scene::Scene& scene, int ranks) {
   const auto side = [&](std::size_t axis, int parts) {  // copies along one axis, by the part's own width
     if (parts == 1) return 0.0;
@@ -259,10 +252,9 @@ void add_steps(const scene::Scene& scene, report::Estimate& e) {
 
 void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   e.ranks = ranks;
-  e.most_ranks = ranks_at_most(scene);
-  if (e.ranks > e.most_ranks) {
-    refuse(fmt::format("--ranks {}: the columns of this scene are enough for {} ranks", e.ranks, e.most_ranks));
-  }
+  const geometry::ColumnGrid grid = scene.columns();
+  e.most_ranks = scene::most_ranks(grid, scene.in.parallel.decomposition);
+  scene::check_ranks(grid, scene.in.parallel.decomposition, ranks);
   e.ghosts = ghost_share(scene, ranks);
   const double own = static_cast<double>(e.particles.value) / ranks;
   const double settling = program_bytes + own * ((1.0 + e.ghosts) * own_bytes(scene) + list_bytes(scene));

@@ -40,7 +40,8 @@ struct Estimate {
   std::int64_t particle_steps = 0;    ///< sum over the steps of the particles that move
   double duration = 0.0;              ///< [s] simulated
   bool at_most = false;               ///< stop = "settled" may take fewer steps
-  int ranks = 1, most_ranks = 1;      ///< asked; that the columns allow
+  int ranks = 1;                      ///< asked
+  std::int64_t most_ranks = 1;        ///< that the columns allow
   double ghosts = 0.0;                ///< copies of other ranks' particles a rank holds, by its own
   std::int64_t settling_bytes = 0;    ///< memory of a rank while layers settle
   std::int64_t writing_bytes = 0;     ///< the same while a pack or a checkpoint is written

@@ -20,50 +20,65 @@ int tile_edge(const geometry::ColumnGrid& grid) {
   return edge;
 }
 
+// The longer lateral axis: slabs are cut across it.
+std::size_t longer_axis(const geometry::ColumnGrid& grid) {
+  return grid.box().lateral_axes() == 2 && grid.box().size[1] > grid.box().size[0] ? 1 : 0;
+}
+
+std::array<int, 2> tiles_of(const geometry::ColumnGrid& grid, int edge) {
+  const auto [nx, ny] = grid.counts();
+  return {(nx + edge - 1) / edge, (ny + edge - 1) / edge};
+}
+
 int part_of(const std::vector<int>& cuts, int coordinate) {
   return static_cast<int>(std::ranges::upper_bound(cuts, coordinate) - cuts.begin()) - 1;
 }
 
 }  // namespace
 
+std::int64_t most_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind) {
+  if (kind == input::Decomposition::slab) return grid.counts()[longer_axis(grid)];
+  if (kind == input::Decomposition::pencil) return grid.size();
+  const auto [x, y] = tiles_of(grid, tile_edge(grid));
+  return std::int64_t{x} * y;
+}
+
+// Every rank needs at least one column (METIS: one tile).
+void check_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind, int ranks) {
+  const auto [nx, ny] = grid.counts();
+  const std::int64_t most = most_ranks(grid, kind);
+  std::string words;
+  if (kind == input::Decomposition::slab && ranks > most) {
+    words = fmt::format(
+        "slabs would be thinner than one interaction range: this scene has {} columns along its longer axis, so "
+        "use at most {} ranks",
+        most, most);
+    if (ny > 1) {
+      words += fmt::format(", or decomposition = \"pencil\" (at most {} ranks)",
+                           most_ranks(grid, input::Decomposition::pencil));
+    }
+  } else if (kind == input::Decomposition::pencil &&
+             !factor_ranks(ranks, nx, ny, grid.box().size[0], grid.box().size[1])) {
+    words = fmt::format(
+        "{} ranks cannot be laid out as Px x Py over {} x {} columns one interaction range wide; use at most {} "
+        "ranks, with a divisor that fits",
+        ranks, nx, ny, most);
+  } else if (kind == input::Decomposition::metis && ranks > most) {
+    words = fmt::format("more ranks than columns: use at most {} ranks", most);
+  }
+  if (!words.empty()) throw Error(ExitCode::bad_input, "parallel.decomposition: " + words);
+}
+
 Ownership::Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, input::Decomposition kind)
     : comm_(&comm), grid_(grid), kind_(kind), tile_(kind == input::Decomposition::metis ? tile_edge(grid) : 1) {
-  check_rank_count();
+  check_ranks(grid_, kind_, comm.size());  // the same on all ranks
   table_ = cut(std::vector<std::int64_t>(weight_count(), 0));
   collect();
 }
 
-// Every rank needs at least one column (METIS: one tile).
-void Ownership::check_rank_count() const {
-  const auto [nx, ny] = grid_.counts();
-  const int ranks = comm_->size();
-  std::string words;
-  if (kind_ == input::Decomposition::slab && ranks > grid_.counts()[long_axis()]) {
-    words = fmt::format(
-        "slabs would be thinner than one interaction range: this scene has {} columns along its longer axis, so "
-        "use at most {} ranks",
-        grid_.counts()[long_axis()], grid_.counts()[long_axis()]);
-    if (ny > 1) words += fmt::format(", or decomposition = \"pencil\" (at most {} ranks)", grid_.size());
-  } else if (kind_ == input::Decomposition::pencil &&
-             !factor_ranks(ranks, nx, ny, grid_.box().size[0], grid_.box().size[1])) {
-    words = fmt::format(
-        "{} ranks cannot be laid out as Px x Py over {} x {} columns one interaction range wide; use at most {} "
-        "ranks, with a divisor that fits",
-        ranks, nx, ny, grid_.size());
-  } else if (kind_ == input::Decomposition::metis && static_cast<std::size_t>(ranks) > weight_count()) {
-    words = fmt::format("more ranks than columns: use at most {} ranks", weight_count());
-  }
-  if (!words.empty()) throw Error(ExitCode::bad_input, "parallel.decomposition: " + words);  // the same on all ranks
-}
+std::size_t Ownership::long_axis() const { return longer_axis(grid_); }
 
-std::size_t Ownership::long_axis() const {
-  return grid_.box().lateral_axes() == 2 && grid_.box().size[1] > grid_.box().size[0];
-}
-
-std::array<int, 2> Ownership::tiles() const {
-  const auto [nx, ny] = grid_.counts();
-  return {(nx + tile_ - 1) / tile_, (ny + tile_ - 1) / tile_};
-}
+std::array<int, 2> Ownership::tiles() const { return tiles_of(grid_, tile_); }
 
 // Weights are summed per line of columns (slab), per line on both axes (pencil) or per tile (METIS).
 std::size_t Ownership::weight_count() const {

@@ -11,12 +11,19 @@
 
 namespace packmpi::scene {
 
+/// The largest number of ranks that the decomposition has columns for, of those of this grid; with "pencil" not every
+/// smaller number can be laid out. Local.
+[[nodiscard]] std::int64_t most_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind);
+
+/// Throws Error(bad_input) if the decomposition cannot give each of `ranks` ranks columns, with the largest number that
+/// can be used. Local.
+void check_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind, int ranks);
+
 /// The column -> rank table, whichever way it was filled (slab, pencil, METIS). The halo, migration and RSA see only
 /// this. Memory: cut positions for slab and pencil, at most 65,536 tiles of columns for METIS; never O(particles).
 class Ownership {
  public:
-  /// Collective. Equal shares. Throws Error(bad_input) on all ranks if there are more ranks than the decomposition can
-  /// give columns to, with the largest usable number.
+  /// Collective. Equal shares. Throws on all ranks as check_ranks() does.
   Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, input::Decomposition kind);
 
   /// Collective. Shares of equal weight; `mine` are the weights of the columns this rank owns, in the order of
@@ -39,7 +46,6 @@ class Ownership {
     std::vector<int> cuts_x, cuts_y;  // slab, pencil: first column coordinate of each part, ascending, and the end
     std::vector<Rank> tiles;          // METIS: owner of each tile
   };
-  void check_rank_count() const;
   [[nodiscard]] std::size_t long_axis() const;     // the longer lateral axis: slabs are cut across it
   [[nodiscard]] std::array<int, 2> tiles() const;  // tiles on each axis
   [[nodiscard]] std::size_t weight_count() const;

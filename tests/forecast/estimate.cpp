@@ -16,6 +16,7 @@
 #include "pack/pack.hpp"
 #include "run/make_pack.hpp"
 #include "scene/expectation.hpp"
+#include "scene/ownership.hpp"
 
 namespace packmpi::forecast {
 namespace {
@@ -222,12 +223,27 @@ TEST_F(Estimates, RanksShareTheMemory) {
   EXPECT_GT(ten.writing_bytes, ten.settling_bytes);
 }
 
+// On wide, almost empty ground columns are wider than particles; slabs are fewer than columns.
+TEST_F(Estimates, ThePromisedRanksAreThoseThatAreLetIn) {
+  for (const char* kind : {"slab", "pencil", "metis"}) {
+    for (const char* size : {"[60,60,0.3]", "[0.6,0.9,0.3]"}) {
+      const Set set{fmt::format("container.size={}", size), fmt::format("parallel.decomposition={}", kind),
+                    "layers.fraction=0.02"};
+      const scene::Scene made = scene(set);
+      const auto most = static_cast<int>(of(without_probe({.ranks = 1}), set).most_ranks);
+      EXPECT_NO_THROW(scene::check_ranks(made.columns(), made.in.parallel.decomposition, most)) << kind << size;
+      EXPECT_THROW(scene::check_ranks(made.columns(), made.in.parallel.decomposition, most + 1), Error) << kind << size;
+      EXPECT_THAT(refusal(without_probe({.ranks = most + 1}), set), HasSubstr(fmt::format("at most {} ranks", most)));
+    }
+  }
+}
+
 TEST_F(Estimates, WhatHasNoAnswerIsRefused) {
   EXPECT_THAT(refusal(without_probe({.particles = 1000, .height = 0.2, .sides = {0.2, 0.2}})),
               HasSubstr("nothing to find"));
   EXPECT_THAT(refusal(without_probe({.sides = {0.2, std::nullopt}})), HasSubstr("--particles"));
   EXPECT_THAT(refusal(without_probe({.particles = 9, .sides = {std::nullopt}})), HasSubstr("1 side given"));
-  EXPECT_THAT(refusal(without_probe({.ranks = 100000})), HasSubstr("enough for"));
+  EXPECT_THAT(refusal(without_probe({.ranks = 100000})), HasSubstr("use at most"));
   EXPECT_THAT(refusal(without_probe({.particles = 3, .height = 5.0})), HasSubstr("less than one"));
   EXPECT_THAT(refusal(without_probe({.particles = 2})), HasSubstr("less than a layer"));
 }
