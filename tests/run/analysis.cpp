@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 
 #include "input/read.hpp"
 #include "run/analyze.hpp"
@@ -67,20 +69,26 @@ class Analysis : public ::testing::Test {
   const comm::Comm comm_{MPI_COMM_WORLD};
 
   [[nodiscard]] observe::Analysis of(const Lattice& lattice, int dimension) const {
-    input::Input in = test::periodic(test::small_input(dimension, 1.0, r));
-    in.container.size.assign(lattice.size.begin(), lattice.size.begin() + dimension);
+    return of(lattice, test::small_input(dimension, 1.0, r), range, [](std::size_t) { return r; });
+  }
+
+  /// Of a lattice in which particle k has the radius radius_of(k), by an analysis that reaches so far.
+  [[nodiscard]] observe::Analysis of(const Lattice& lattice, const input::Input& with, double reach,
+                                     const std::function<double(std::size_t)>& radius_of) const {
+    input::Input in = test::periodic(with);
+    in.container.size.assign(lattice.size.begin(), lattice.size.begin() + in.container.dimension);
     in.layers.thickness = 0.2;
     scene::Scene scene = scene::build(in);
-    scene.in.near_field = input::NearField{.alpha1 = 0, .beta1 = 0, .alpha2 = 0, .beta2 = 0, .cutoff = range};
-    scene.reach = range;
+    scene.in.near_field = input::NearField{.alpha1 = 0, .beta1 = 0, .alpha2 = 0, .beta2 = 0, .cutoff = reach};
+    scene.reach = reach;
     Bed bed(comm_, scene);
     GlobalId id = 0;
     for (const Vec3& x : lattice.points) {  // by turns, wherever it belongs
-      if (id % comm_.size() == comm_.rank()) bed.store.add(id, x, r, {}, {});
+      if (id % comm_.size() == comm_.rank()) bed.store.add(id, x, radius_of(static_cast<std::size_t>(id)), {}, {});
       ++id;
     }
     bed.neighborhood.rebuild(bed.store);
-    return observe::analyse({comm_, scene, bed.store, bed.neighborhood, range});
+    return observe::analyse({comm_, scene, bed.store, bed.neighborhood, reach});
   }
 };
 
@@ -117,12 +125,131 @@ TEST_F(Analysis, PairDistributionCountsTheShells) {
     }
     return count;
   };
-  // The density is that of the interior, whose cut through the lattice is uneven: a tenth.
+  // The density is that of the interior, whose cut through the lattice is uneven: a tenth. (APlainCount is exact.)
   EXPECT_NEAR(shell(0.9, 1.2) / 12.0, shell(1.6, 1.9) / 24.0, 1e-9);
   EXPECT_NEAR(shell(1.3, 1.5) / 6.0, shell(2.1, 2.4) / 24.0, 1e-9);
   EXPECT_NEAR(shell(0.9, 1.2), 12.0, 3.0);
   EXPECT_EQ(shell(0.0, 0.9), 0.0);
   EXPECT_EQ(shell(1.1, 1.3), 0.0);
+}
+
+/// Points as even as random ones never are: the additive sequence of the plastic number's powers.
+Lattice even_gas(int count) {
+  constexpr double g = 1.2207440846057596;
+  Lattice gas{.points = {}, .size = {1.0, 1.0, 1.0}};
+  const auto share = [](double x) { return x - std::floor(x); };
+  for (int k = 1; k <= count; ++k) {
+    gas.points.push_back({share(0.5 + k / g), share(0.5 + k / (g * g)), share(0.5 + k / (g * g * g))});
+  }
+  return gas;
+}
+
+/// Mean over the lateral columns, a diameter wide, of the highest top.
+double surface_of(const Lattice& lattice) {
+  const auto columns = static_cast<std::size_t>(1.0 / d);
+  std::vector<double> tops(columns * columns, 0.0);
+  for (const Vec3& x : lattice.points) {
+    const auto at = [&](double t) { return static_cast<std::size_t>(t * static_cast<double>(columns)); };
+    double& top = tops[at(x[0]) * columns + at(x[1])];
+    top = std::max(top, x[2] + r);
+  }
+  return std::accumulate(tops.begin(), tops.end(), 0.0) / static_cast<double>(tops.size());
+}
+
+TEST_F(Analysis, PairDistributionIsAPlainCountAndOneInAGas) {
+  const Lattice gas = even_gas(4000);
+  const observe::Analysis a = of(gas, 3);
+  const double high = std::min(surface_of(gas) - range, 0.8);
+  std::vector<double> pairs(a.pairs.g.values.size(), 0.0);
+  double centres = 0.0;
+  for (const Vec3& x : gas.points) {
+    if (!(x[2] >= 0.2 && x[2] < high)) continue;
+    centres += 1.0;
+    for (const Vec3& y : gas.points) {
+      const auto apart = [&](std::size_t axis) { return std::remainder(y[axis] - x[axis], 1.0); };
+      const double distance = std::hypot(apart(0), apart(1), y[2] - x[2]);
+      const auto bin = static_cast<std::size_t>(distance / d * 50.0);
+      if (&x != &y && bin < pairs.size()) pairs[bin] += 1.0;
+    }
+  }
+  EXPECT_EQ(static_cast<double>(a.pairs.centres), centres);
+  ASSERT_EQ(pairs.size(), 125U);
+  const double density = centres / (high - 0.2);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double inner = static_cast<double>(k) * d / 50.0, outer = static_cast<double>(k + 1) * d / 50.0;
+    const double shell = 4.0 / 3.0 * std::numbers::pi * (std::pow(outer, 3) - std::pow(inner, 3));
+    EXPECT_NEAR(a.pairs.g.values[k], pairs[k] / (centres * density * shell), 1e-9 * (1.0 + a.pairs.g.values[k])) << k;
+  }
+  const double found = std::accumulate(pairs.begin(), pairs.end(), 0.0) / centres;
+  EXPECT_NEAR(found / (4000.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(range, 3)), 1.0, 0.02);
+}
+
+TEST_F(Analysis, ForcesOfASqueezedLatticeAreHertzAndItsStressIsTheForceOverTheArea) {
+  const observe::Analysis a = of(repeat({{.5, .5, .5}}, {d, d, d}, {10, 10, 11}), 3);
+  const double own_modulus = 1e8 / (1.0 - 0.25 * 0.25);  // E* of a pair is half of it, against the rigid floor all
+  const double length = squeeze * d;
+  const double force = 4.0 / 3.0 * (0.5 * own_modulus) * std::sqrt(0.5 * r) * std::pow(d - length, 1.5);
+  // Of the 11 planes 7 are in the bulk, and 6 of the 10 gaps between them: 2.2 to 8.8 distances above the floor.
+  EXPECT_EQ(a.forces.contacts, 100 * (7 + 7 + 6));
+  EXPECT_NEAR(a.forces.mean_normal_force, force, 1e-9 * force);
+  const double pressure = force / (length * length);
+  EXPECT_NEAR(a.forces.stress[0][0], 7.0 / 6.6 * pressure, 1e-9 * pressure);
+  EXPECT_NEAR(a.forces.stress[1][1], 7.0 / 6.6 * pressure, 1e-9 * pressure);
+  EXPECT_NEAR(a.forces.stress[2][2], 6.0 / 6.6 * pressure, 1e-9 * pressure);
+  EXPECT_NEAR(a.forces.stress[0][2], 0.0, 1e-9 * pressure);
+  EXPECT_NEAR(a.forces.fabric[0][0], 0.35, 1e-12);
+  EXPECT_NEAR(a.forces.fabric[2][2], 0.30, 1e-12);
+  const double on_floor = 4.0 / 3.0 * own_modulus * std::sqrt(r) * std::pow(r - 0.5 * length, 1.5);
+  EXPECT_NEAR(a.floor_force, 100.0 * on_floor, 1e-9 * a.floor_force);
+  const double mass = 1000.0 * 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  EXPECT_NEAR(a.weight, 1100.0 * mass * 2.0, 1e-9 * a.weight);
+}
+
+// Planes of large and small spheres in turn: radical cells are boxes, and the planes between them are nearer to the
+// small ones by (R^2 - r^2) / 2 h, h their distance.
+TEST_F(Analysis, RadicalCellsOfTwoSizesInTurnAreBoxesThatFillThePack) {
+  constexpr double large = 1.5 * r, side = 0.07, h = 0.055;
+  Lattice planes{.points = {}, .size = {7 * side, 7 * side, 10 * h}};
+  for (int k = 0; k < 490; ++k) {
+    planes.points.push_back({(k % 7 + 0.5) * side, (k / 7 % 7 + 0.5) * side, (k / 49 + 0.5) * h});
+  }
+  const auto radius_of = [](std::size_t k) { return k / 49 % 2 == 0 ? large : r; };
+  const observe::Analysis a = of(planes, test::graded_input(3, 1.0, r, 1.5), 0.14, radius_of);
+  const double shift = (large * large - r * r) / h;
+  const auto share = [&](double radius, double height) {
+    return 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3) / (side * side * height);
+  };
+  const double of_large = share(large, h + shift), of_small = share(r, h - shift);
+  EXPECT_EQ(a.local.left_out, 0);
+  EXPECT_EQ(a.local.counted, 6 * 49);
+  EXPECT_NEAR(a.local.mean, 0.5 * (of_large + of_small), 1e-9);
+  EXPECT_NEAR(a.local.sd, 0.5 * std::abs(of_large - of_small), 1e-9);
+}
+
+TEST_F(Analysis, SegregationIsPositiveWhereTheLargeOnesAreOnTop) {
+  for (const double sign : {1.0, -1.0}) {
+    const auto radius_of = [sign](std::size_t k) {  // not on a line: 20 planes of three spheres
+      const double rise = static_cast<double>(k / 3) / 19.0 - 0.5;
+      return r * (1.25 + 0.35 * sign * rise + 0.05 * static_cast<double>(k % 3));
+    };
+    Lattice tower{.points = {}, .size = {1.0, 1.0, 3.0}};
+    for (std::size_t k = 0; k < 60; ++k) {
+      tower.points.push_back({0.2 + 0.3 * static_cast<double>(k % 3), 0.5, 0.1 + 0.1 * static_cast<double>(k / 3)});
+    }
+    const observe::Analysis a = of(tower, test::graded_input(3, 1.0, r, 1.5), range, radius_of);
+    double mean_r = 0.0, mean_z = 0.0, rr = 0.0, zz = 0.0, rz = 0.0;
+    for (std::size_t k = 0; k < 60; ++k) mean_r += radius_of(k) / 60.0, mean_z += tower.points[k][2] / 60.0;
+    for (std::size_t k = 0; k < 60; ++k) {
+      const double dr = radius_of(k) - mean_r, dz = tower.points[k][2] - mean_z;
+      rr += dr * dr, zz += dz * dz, rz += dr * dz;
+    }
+    EXPECT_NEAR(a.segregation.correlation, rz / std::sqrt(rr * zz), 1e-9);
+    EXPECT_GT(sign * a.segregation.correlation, 0.5);
+    const double width = 3.0 * 2.0 * 1.25 * r;  // 0.15: planes at 0.1; at 0.2 and none other; at 0.3, 0.4; ...
+    EXPECT_NEAR(a.segregation.mean_radius.width, width, 1e-12);
+    EXPECT_NEAR(a.segregation.mean_radius.values[0], (radius_of(0) + radius_of(1) + radius_of(2)) / 3.0, 1e-12);
+    EXPECT_NEAR(a.segregation.mean_radius.values[1], (radius_of(3) + radius_of(4) + radius_of(5)) / 3.0, 1e-12);
+  }
 }
 
 TEST_F(Analysis, HexagonalClosePacked) {
