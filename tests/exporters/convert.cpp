@@ -229,6 +229,35 @@ TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
   }
 }
 
+/// The numbers behind `word` in a text.
+std::vector<double> numbers_behind(const std::string& text, const std::string& word) {
+  std::istringstream rest(text.substr(std::min(text.size(), text.find(word) + word.size())));
+  std::vector<double> numbers;
+  for (double x = 0.0; rest >> x;) numbers.push_back(x);
+  return numbers;
+}
+
+// "hertz k e" is 4/3 E* and Tsuji's restitution: E* is E / (1 - nu^2), half of it for two that deform.
+TEST_F(Convert, LammpsHasTheStiffnessOfPairsAndOfRigidWalls) {
+  const std::string path = make_pack(20, 3, "\"wall\", \"periodic\"");
+  const Converted done = convert_pack(comm_, {.pack = path, .format = "lammps"});
+  const std::string text = contents(done.files.at(1));
+  const double own_modulus = 1e8 / (1.0 - 0.25 * 0.25);
+  const auto pairs = numbers_behind(text, "pair_coeff      * * hertz ");
+  const auto wall = numbers_behind(text, "fix             wall_x all wall/gran granular hertz ");
+  const auto floor = numbers_behind(text, "fix             floor all wall/gran granular hertz ");
+  ASSERT_EQ(pairs.size(), 2u) << text;
+  EXPECT_NEAR(pairs[0], 4.0 / 3.0 * 0.5 * own_modulus, 1e-9 * own_modulus);
+  EXPECT_NEAR(pairs[1], tsuji_restitution(0.1), 1e-12);
+  ASSERT_EQ(floor.size(), 2u) << text;
+  EXPECT_NEAR(floor[0], 4.0 / 3.0 * own_modulus, 1e-9 * own_modulus);
+  EXPECT_EQ(wall, floor);
+  EXPECT_TRUE(contains(
+      text, "timestep        " +
+                fmt::format(
+                    "{}", scene::build(input::parse(scene_text(3, "\"wall\", \"periodic\""), "scene", {})).time_step)));
+}
+
 TEST_F(Convert, AnEmptyPackIsAFileWithoutRows) {
   const std::string path = make_pack(0, 3, both_periodic);
   for (const FormatWords& format : convert_formats()) {

@@ -1,6 +1,6 @@
 /// Every call of the system that writes or reads a checkpoint or a pack fails once, one after the other, on all ranks
 /// and on one alone: nothing valid is lost, nothing wrong is taken, every rank hears of it, nobody waits for ever.
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "disk/text_file.hpp"
 #include "pack/checkpoint.hpp"
@@ -39,7 +40,7 @@ class Faults : public ::testing::Test {
  protected:
   comm::Comm comm_{MPI_COMM_WORLD};
   Folder folder_{comm_, fast_folder()};
-  std::string prefix_ = folder_.path() + "/";
+  std::string prefix_ = folder_.path();
   std::string path_ = folder_.file("a.hdf");
   testing::Parts parts_ =
       testing::make_parts(comm_, particles::layout_of(3, true), testing::some_grains(particle_count, 3), Spread::all);
@@ -183,6 +184,44 @@ TEST_F(Faults, WritingASummary) {
   write_and_look("summary", [&](int version, const std::string& path) {
     write_text(comm_, path, fmt::format("{:0100}\n", version));
   });
+}
+
+/// What this rank did to the files of its folder while `action` ran, a line a call.
+std::vector<std::string> record_of(const std::string& prefix, const std::function<void()>& action) {
+  io_faults_record(prefix.c_str());
+  action();
+  std::istringstream lines(io_faults_recorded());
+  std::vector<std::string> calls;
+  for (std::string line; std::getline(lines, line);) calls.push_back(line);
+  return calls;
+}
+
+// What a power cut cannot undo: each rank has its bytes on the disk before the name is given, and the name after it.
+TEST_F(Faults, EveryByteIsOnTheDiskBeforeTheNameIsGiven) {
+  RunState state;
+  state.count = static_cast<GlobalId>(particle_count);
+  const std::array<const particles::Store*, 1> stores{&parts_.store};
+  const std::array<std::function<void()>, 3> writers{
+      [&] { write_checkpoint(comm_, path_, stores, state); },
+      [&] { write_pack(comm_, path_, parts_.view(true), testing::some_record(3, 2)); },
+      [&] { write_text(comm_, path_, "words\n"); }};
+  for (const auto& write : writers) {
+    const std::vector<std::string> calls = record_of(prefix_, write);
+    const auto last = [&calls](const std::string& call) {  // 0: never
+      return calls.rend() - std::find(calls.rbegin(), calls.rend(), call);
+    };
+    const std::string all = fmt::format("{}", fmt::join(calls, ", "));
+    const auto written = last("write a.hdf.tmp");
+    EXPECT_EQ(last("write a.hdf"), 0) << all;
+    EXPECT_GE(last("fsync a.hdf.tmp"), written) << all;
+    if (&write != &writers.back()) {
+      EXPECT_GT(written, 0) << all;
+    }
+    if (comm_.rank() != 0) continue;
+    EXPECT_GT(last("fsync a.hdf.tmp"), written) << all;
+    EXPECT_GT(last("rename a.hdf"), last("fsync a.hdf.tmp")) << all;
+    EXPECT_GT(last("fsync ."), last("rename a.hdf")) << all;
+  }
 }
 
 // A time series is written in place: rows that were told to be there are there, and a hole is told at the end.

@@ -294,6 +294,37 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Restart, ::testing::ValuesIn(kinds), kind_name)
 class RestartRules : public Restart {};
 INSTANTIATE_TEST_SUITE_P(OneScene, RestartRules, ::testing::Values(kinds[0]), kind_name);
 
+// A layer that comes to rest by energy and drift, whose looks must go on as if nothing had been: stopped while the time
+// at rest is counted, and at its very end, when nothing will measure the compaction rate again.
+TEST_P(RestartRules, StoppedWhileItComesToRest) {
+  in_.layers.maximum = 1;
+  in_.layers.duration = 0.8;
+  in_.layers.velocity = {};
+  in_.container.size = {0.4, 0.2, 0.06};  // a layer reaches into the bulk
+  in_.dynamics.stop = input::StopRule::settled;
+  in_.dynamics.settled_energy = 0.05;
+  in_.dynamics.settled_drift = 0.02;
+  in_.dynamics.settled_hold = 0.03;
+  in_.dynamics.settled_force = 1e9;
+  const Left whole = untouched();
+  const std::int64_t end = whole.record.layers.at(0).steps;  // all ranks made it
+  for (const std::int64_t stop : {end - 147, end}) {
+    SCOPED_TRACE(::testing::Message() << "stopped after " << stop << " of " << end << " steps");
+    EXPECT_EQ(run(1, Decomposition::slab, [&](Options& o) { o.force = true, o.max_steps = stop; }),
+              ExitCode::stopped_early);
+    const pack::RunState state = pack::read_state(file("ckpt.A.hdf"));
+    world_.barrier();
+    EXPECT_TRUE(stop == end ? state.phase == pack::Phase::relaxation : state.calm_since > 0) << state.calm_since;
+    EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.restart = "auto"; }), ExitCode::done)
+        << words_;
+    expect_same(left(), whole);
+    if (world_.rank() == 0) {
+      EXPECT_EQ(whole.record.layers[0].stop_reason, "settled");
+      EXPECT_NE(left_.record.compaction_rate, 0.0);
+    }
+  }
+}
+
 TEST_P(RestartRules, ASignalOnOneRankStopsAll) {
   const Left whole = untouched();
   in_.checkpoint.every = "off";

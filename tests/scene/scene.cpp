@@ -33,6 +33,15 @@ TEST(ContactDuration, IsEquation23) {
   EXPECT_NEAR(t, 40.34e-6, 0.01 * 40.34e-6);
 }
 
+TEST(ContactDuration,
+     HasTheConstantOfThePaper) {  // t = 2.87 (m*^2 / (r* E*^2 v))^(1/5), in numbers without a mass or a radius
+  EXPECT_NEAR(input::contact_duration(1.0, 1.0, 1.0, 1.0), 2.87, 1e-12);
+  EXPECT_NEAR(input::contact_duration(32.0, 1.0, 1.0, 1.0), 2.87 * 4.0, 1e-12);
+  EXPECT_NEAR(input::contact_duration(1.0, 32.0, 1.0, 1.0), 2.87 / 2.0, 1e-12);
+  EXPECT_NEAR(input::contact_duration(1.0, 1.0, 32.0, 1.0), 2.87 / 4.0, 1e-12);
+  EXPECT_NEAR(input::contact_duration(1.0, 1.0, 1.0, 1024.0), 2.87 / 4.0, 1e-12);
+}
+
 TEST(Scene, AutoTakesAFifthOfTheContactDuration) {
   input::Input in = small_input(3, 0.2, 0.02);
   in.dynamics.time_step.reset();

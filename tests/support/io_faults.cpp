@@ -32,6 +32,20 @@ std::atomic<Fault> fault = Fault::none;
 std::atomic<long> calls = 0, wanted = 0, failed = 0;
 std::array<char, 4096> folder{};
 std::array<std::atomic<Use>, 4096> uses{};  // of the descriptors
+bool recording = false;
+std::string record;
+std::array<std::string, 4096> names{};  // of the descriptors, while recording
+
+void note(const char* what, const std::string& name) {
+  if (recording) record += std::string(what) + ' ' + name + '\n';
+}
+
+/// Without the folder; the folder itself is ".".
+std::string short_name(const char* path) {
+  const std::size_t prefix = std::strlen(folder.data());
+  if (std::strlen(path) <= prefix) return ".";
+  return path + prefix + (path[prefix] == '/' ? 1 : 0);
+}
 
 template <class Function>
 Function* next(const char* name) {
@@ -72,13 +86,17 @@ void set_use(int fd, Use use) {
   if (fd >= 0 && fd < static_cast<int>(uses.size())) uses[static_cast<std::size_t>(fd)] = use;
 }
 
+void note_use(const char* what, int fd) {
+  if (use_of(fd) == Use::writing) note(what, names[static_cast<std::size_t>(fd)]);
+}
+
 bool below(const char* path) {
   return folder[0] != '\0' && std::strncmp(path, folder.data(), std::strlen(folder.data())) == 0;
 }
 
 /// Opening `path` by `real`, for reading or writing.
 template <class Real>
-int opening(const char* path, int flags, Real real) {
+int opening_unnamed(const char* path, int flags, Real real) {
   if (!below(path) || (flags & O_DIRECTORY) != 0) {  // the folder itself: only its fsync can fail
     const int fd = real();
     set_use(fd, below(path) || (folder[0] != '\0' && path == std::string(folder.data())) ? Use::writing : Use::none);
@@ -91,9 +109,18 @@ int opening(const char* path, int flags, Real real) {
   return fd;
 }
 
+template <class Real>
+int opening(const char* path, int flags, Real real) {
+  const int fd = opening_unnamed(path, flags, real);
+  if (recording && use_of(fd) != Use::none) names[static_cast<std::size_t>(fd)] = short_name(path);
+  if (recording && (flags & O_TRUNC) != 0) note_use("write", fd);
+  return fd;
+}
+
 /// Writing by `real`, or half of it by `half`.
 template <class Real, class Half>
 ssize_t writing(int fd, Real real, Half half) {
+  note_use("write", fd);
   if (use_of(fd) != Use::writing || !fails(Call::write)) return real();
   return fault == Fault::short_write ? half() : -1;
 }
@@ -155,6 +182,17 @@ void io_faults_arm(const char* where, Fault kind, long call) {
 long io_faults_disarm() {
   fault = Fault::none;
   return failed;
+}
+
+void io_faults_record(const char* where) {
+  std::strncpy(folder.data(), where, folder.size() - 1);
+  record.clear();
+  recording = true;
+}
+
+const char* io_faults_recorded() {
+  recording = false;
+  return record.c_str();
 }
 
 int open(const char* path, int flags, ...) {
@@ -220,6 +258,7 @@ ssize_t pwritev64(int fd, const iovec* parts, int count, off64_t at) { return pw
 
 size_t fwrite(const void* data, size_t size, size_t count, FILE* file) {
   static auto* const real = next<size_t(const void*, size_t, size_t, FILE*)>("fwrite");
+  note_use("write", fileno(file));
   if (use_of(fileno(file)) != Use::writing || !fails(Call::write)) return real(data, size, count, file);
   return fault == Fault::short_write ? real(data, size, count / 2, file) : 0;
 }
@@ -246,6 +285,7 @@ ssize_t __pread64_chk(int fd, void* data, size_t size, off64_t at, size_t) {  //
 }
 
 int fallocate(int fd, int mode, off_t at, off_t size) {
+  note_use("write", fd);
   static auto* const real = next<int(int, int, off_t, off_t)>("fallocate");
   return changing(fd, [&] { return real(fd, mode, at, size); });
 }
@@ -253,6 +293,7 @@ int fallocate(int fd, int mode, off_t at, off_t size) {
 int fallocate64(int fd, int mode, off64_t at, off64_t size) { return fallocate(fd, mode, at, size); }
 
 int ftruncate(int fd, off_t size) noexcept {
+  note_use("write", fd);
   static auto* const real = next<int(int, off_t)>("ftruncate");
   return changing(fd, [&] { return real(fd, size); });
 }
@@ -260,6 +301,7 @@ int ftruncate(int fd, off_t size) noexcept {
 int ftruncate64(int fd, off64_t size) noexcept { return ftruncate(fd, size); }
 
 int fsync(int fd) {
+  note_use("fsync", fd);
   static auto* const real = next<int(int)>("fsync");
   return changing(fd, [&] { return real(fd); });
 }
@@ -285,6 +327,7 @@ int dup3(int from, int to, int flags) {
 
 int rename(const char* from, const char* to) noexcept {
   static auto* const real = next<int(const char*, const char*)>("rename");
+  if (below(to)) note("rename", short_name(to));
   return below(to) && fails(Call::other) ? -1 : real(from, to);
 }
 }

@@ -17,4 +17,10 @@ extern "C" {
 void io_faults_arm(const char* folder, packmpi::testing::Fault fault, long call);
 /// Ends it. The number of calls that failed.
 long io_faults_disarm();
+
+/// Calls that change files below `folder`, of this process, are written down from now on.
+void io_faults_record(const char* folder);
+/// Ends it. A line a call, in their order: "write NAME", "fsync NAME", "rename NAME", the names without `folder`; the
+/// folder itself is ".". Writing counts whatever changes a file's bytes or size.
+const char* io_faults_recorded();
 }
