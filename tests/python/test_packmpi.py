@@ -63,6 +63,14 @@ class Packs(unittest.TestCase):
         np.testing.assert_array_equal(steps["time"], [0.0, 0.5])
         np.testing.assert_array_equal(steps["top"], [0.1, 0.2])
 
+    def test_a_former_version_has_the_names_of_today(self):
+        pack = Pack(FOLDER.parents[1] / "tests" / "formats" / "bed.pack-1.hdf")
+        self.assertEqual(pack.count, 18)
+        self.assertEqual(pack.summary["target_height"], pack.size[-1])
+        self.assertEqual(len(pack.layers["achieved_fraction"]), len(pack.layers["inserted"]))
+        self.assertLessEqual({"compaction_rate", "relaxations", "relaxation_steps", "target_fraction"}, set(pack.summary))
+        self.assertIn("relaxation", pack.scene()["dynamics"])
+
     def test_no_pack(self):
         with self.assertRaisesRegex(Problem, "cannot read"):
             Pack(self.path)

@@ -24,9 +24,22 @@ def plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
 
 
+# What packs of format version 1 call otherwise; there, target_... and achieved_... are ..._asked and ..._got.
+FORMER = {"creep": "compaction_rate", "thaws": "relaxations", "thaw_steps": "relaxation_steps",
+          "height_before_thaw": "height_before_relaxation", "thaw": "relaxation"}
+
+
+def present(name: str) -> str:
+    """The name of today of what a former format version calls `name`."""
+    for ending, beginning in (("_asked", "target_"), ("_got", "achieved_")):
+        if name.endswith(ending):
+            return beginning + name.removesuffix(ending)
+    return FORMER.get(name, name)
+
+
 def attributes(group: h5py.Group) -> dict[str, Any]:
-    """All attributes of a group, by name."""
-    return {name: plain(value) for name, value in group.attrs.items()}
+    """All attributes of a group, by the names of today."""
+    return {present(name): plain(value) for name, value in group.attrs.items()}
 
 
 class Pack:
@@ -68,7 +81,7 @@ class Pack:
         self.contacts: Integers = particles["contacts"][:]
         self.summary = attributes(file["summary"])
         self.audit = attributes(file["summary/audit"])
-        self.layers: dict[str, list[Any]] = {name: data[:].tolist() for name, data in file["summary/layers"].items()}
+        self.layers: dict[str, list[Any]] = {present(name): data[:].tolist() for name, data in file["summary/layers"].items()}
         self.provenance = attributes(file["provenance"])
         self.size: Floats = np.array(self.summary["size"], dtype=float)
         self.dimension: int = self.summary["dimension"]
@@ -105,8 +118,9 @@ class Pack:
         return max(highest, float(self.size[vertical]))
 
     def scene(self) -> dict[str, Any]:
-        """The scene with every default, in SI units, as tables of tables."""
-        return tomllib.loads(self.provenance["effective_input"])
+        """The scene with every default, in SI units, as tables of tables, by the names of today."""
+        scene = tomllib.loads(self.provenance["effective_input"])
+        return {**scene, "dynamics": {present(name): value for name, value in scene.get("dynamics", {}).items()}}
 
     def steps(self) -> dict[str, Floats]:
         """The time series NAME.steps.csv, a column for each name (without its unit); empty if it is not beside the pack."""
