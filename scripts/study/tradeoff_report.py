@@ -163,7 +163,7 @@ def single_knobs(rows, knobs, reference):
                     lines.append(f"| {knob} | {setting} | {len(mine)} | {measures(references, mine, noise)} |")
                 failed = [row for row in rows if row["scene"] == scene and row["setting"] == setting and not row["particles"]]
                 if failed:
-                    lines.append(f"| {knob} | {setting} | {len(failed)} | exit code {failed[0]['exit']}: {failed[0]['words'].split('.toml: ')[-1]} | | | | | |")
+                    lines.append(f"| {knob} | {setting} | {len(failed)} | exit code {failed[0]['exit']}: {failed[0]['words'].split('.toml: ')[-1].split('; it ended')[0]} | | | | | |")
         if lines:
             out += [f"Scene `{scene}`:", "", "| knob | setting | seeds | phi_bulk | coordination | overlap, ratio | fewer particle-steps | fewer contact evaluations | faster |",
                     "|---|---|---|---|---|---|---|---|---|", *lines, ""]

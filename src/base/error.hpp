@@ -8,11 +8,11 @@ namespace packmpi {
 /// What the process returns to the shell; the same on every rank (doc/input.md, "Exit codes").
 enum class ExitCode : int {
   done = 0,
-  bad_input = 2,
+  bad_input = 2,  ///< the command line, or a scene with its curve: wrong, or not there
   target_missed = 3,
   numerical_failure = 4,
-  io_failure = 5,
-  bad_checkpoint = 6,
+  io_failure = 5,      ///< any other file: not there, damaged, not to be written
+  bad_checkpoint = 6,  ///< --restart finds no checkpoint to go on from
   stopped_early = 75,
 };
 

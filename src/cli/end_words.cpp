@@ -13,11 +13,11 @@ const std::vector<EndWords>& signal_words() {
 
 const std::vector<EndWords>& exit_code_words() {
   static const std::vector<EndWords> lines{{"0", "done, and the targets are met"},
-                                           {"2", "bad input or usage"},
+                                           {"2", "bad usage, or a scene that is wrong or not there"},
                                            {"3", "finished, but a target was missed"},
                                            {"4", "numerical failure"},
-                                           {"5", "files could not be read or written"},
-                                           {"6", "checkpoint unusable"},
+                                           {"5", "another file is not there, damaged, or cannot be written"},
+                                           {"6", "--restart finds no checkpoint to go on from"},
                                            {"75", "stopped early with a checkpoint: --restart auto goes on"}};
   return lines;
 }

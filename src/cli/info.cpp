@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include "pack/checkpoint.hpp"
@@ -58,6 +59,7 @@ std::string describe(const std::string& path, const pack::PackRows& pack) {
 }
 
 std::string describe_here(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw Error(ExitCode::io_failure, path + ": there is no such file");
   if (pack::is_pack(path)) return describe(path, pack::read_pack(path));
   const comm::Comm alone(MPI_COMM_SELF);
   const pack::RunState state = pack::read_state(path);
@@ -70,7 +72,12 @@ std::string describe_here(const std::string& path) {
 std::string describe_file(const comm::Comm& comm, const std::string& path) {
   std::string words;
   comm::agree_on(comm, [&] {
-    if (comm.rank() == 0) words = describe_here(path);
+    if (comm.rank() != 0) return;
+    try {
+      words = describe_here(path);
+    } catch (const Error& error) {  // a checkpoint is unusable for a run; here it is a file like any other
+      throw Error(ExitCode::io_failure, error.what());
+    }
   });
   return comm.broadcast(0, words);
 }

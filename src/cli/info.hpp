@@ -7,7 +7,7 @@
 namespace packmpi::cli {
 
 /// Collective. Reads the file whole and verifies what can be: digests of a checkpoint, shapes and ids of a pack. The
-/// words for the user, the same on all ranks. Throws Error(bad_checkpoint, io_failure) on all ranks.
+/// words for the user, the same on all ranks. Throws Error(io_failure) on all ranks.
 [[nodiscard]] std::string describe_file(const comm::Comm& comm, const std::string& path);
 
 }  // namespace packmpi::cli

@@ -52,14 +52,14 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
   const bool early = attempts < limit;
   throw Error(
       ExitCode::bad_input,
-      fmt::format(
-          "layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of the {:.4f} asked, "
-          "after {} trials; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates near "
-          "0.547 "
-          "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
-          "layers.thickness{}",
-          region.layer, got.inserted, got.target, share, scene.in.layers.fraction, got.trials, attempts, limit, where,
-          early ? ", as too few of the last ones found room" : "", early ? "" : " or layers.attempts"));
+      fmt::format("layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of {:.4f}, "
+                  "after {} trials; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates "
+                  "near 0.547 "
+                  "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
+                  "layers.thickness{}",
+                  region.layer + 1, got.inserted, got.target, share, scene.in.layers.fraction, got.trials, attempts,
+                  limit, where, early ? ", as too few of the last ones found room" : "",
+                  early ? "" : " or layers.attempts"));
 }
 
 void check_room(const scene::Scene& scene, const LayerRegion& region) {

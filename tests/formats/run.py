@@ -83,7 +83,7 @@ def main() -> int:
             read_pack(folder, command, file, name)
         else:
             go_on(folder, command, file, name, int(step))
-        refuse(folder, command, file, 5 if kind == "pack" else 6)
+        refuse(folder, command, file, 5)
     print(f"{len(files)} files, {failures} failures")
     return 1 if failures or len(files) < 4 else 0
 

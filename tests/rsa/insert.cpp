@@ -210,8 +210,8 @@ TEST(GiveUp, AfterTheAttemptsAllowed) {
   for (const Decomposition kind : {Decomposition::slab, Decomposition::metis}) {
     EXPECT_THAT(complaint(scene, region, kind),
                 testing::StartsWith(fmt::format(
-                    "layer 2: random sequential addition placed {} of {} particles: solid fraction "
-                    "{:.4f} of the 0.3000 asked, after {} trials; it ended in 12 of 12 attempts a particle. Lower",
+                    "layer 3: random sequential addition placed {} of {} particles: solid fraction "
+                    "{:.4f} of 0.3000, after {} trials; it ended in 12 of 12 attempts a particle. Lower",
                     serial.placed.size(), serial.target, volume / (0.8 * 0.4), serial.trials)));
   }
 }
