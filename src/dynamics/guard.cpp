@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dynamics/kernel.hpp"
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "input/time_step.hpp"
 #include "scene/limits.hpp"
 
@@ -27,12 +27,7 @@ bool is_finite(const particles::Store& store, LocalIndex i) {
 
 /// Overlap of a listed pair over the smaller radius; negative: apart.
 double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
-  const Vec3 a = now.store.position(i);
-  const Vec3 b = now.store.position(j);
-  Vec3 d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(now.scene.box.lateral_axes()); ++axis) {
-    if (now.scene.box.periodic[axis]) d[axis] = geometry::shortest(d[axis], now.scene.box.size[axis]);
-  }
+  const Vec3 d = geometry::separation(now.scene.box, now.store.position(i), now.store.position(j));
   const double ri = now.store.radius(i);
   const double rj = now.store.radius(j);
   return (ri + rj - norm(d)) / std::min(ri, rj);
@@ -40,10 +35,7 @@ double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
 
 /// Penetration of a wall over the radius; negative: apart.
 double penetration_of(const Inspected& now, LocalIndex i, neighbor::Wall wall) {
-  const auto number = static_cast<int>(wall);
-  const auto axis = static_cast<std::size_t>(number == 0 ? now.scene.box.vertical() : (number - 1) / 2);
-  const double x = now.store.position(i)[axis];
-  const double distance = number > 0 && number % 2 == 0 ? now.scene.box.size[axis] - x : x;
+  const double distance = now.scene.box.plane(wall).distance(now.store.position(i));
   return (now.store.radius(i) - distance) / now.store.radius(i);
 }
 

@@ -1,6 +1,6 @@
 #include "dynamics/implicit_contacts.hpp"
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::dynamics {
 namespace {
@@ -46,22 +46,18 @@ Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::
 
 Interaction of_wall(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                     neighbor::Wall wall) {
-  const auto number = static_cast<std::size_t>(wall);
-  const std::size_t axis =
-      wall == neighbor::Wall::floor ? static_cast<std::size_t>(scene.box.vertical()) : (number - 1) / 2;
-  const bool high = wall != neighbor::Wall::floor && number % 2 == 0;
+  const geometry::Plane plane = scene.box.plane(wall);
   const Vec3 x = store.position(i), v = store.velocity(i);
   Interaction at{.first = i,
                  .second = -1,
                  .d = {},
                  .v = {-v[0], -v[1], -v[2]},
                  .s = surface_spin(store, i),
-                 .wall_normal = {},
+                 .wall_normal = plane.normal(),
                  .radii = store.radius(i),
                  .reduced_radius = store.radius(i),
                  .reduced_mass = 1.0 / inverse_mass(law, store, i)};
-  at.wall_normal[axis] = high ? 1.0 : -1.0;
-  at.d[axis] = (high ? scene.box.size[axis] : 0.0) - x[axis];
+  at.d[static_cast<std::size_t>(plane.axis)] = plane.sign * plane.distance(x);
   return at;
 }
 

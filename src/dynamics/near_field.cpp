@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "dynamics/kernel.hpp"
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::dynamics {
 namespace {

@@ -65,7 +65,7 @@ void check_free(const Names& names) {
   }
 }
 
-void check_copies(const ConvertRequest& request, const geometry::Box& box) {
+void check_copies(const ConvertRequest& request, const geometry::Container& box) {
   for (int axis = 0; axis < 2; ++axis) {
     const int n = request.copies[static_cast<std::size_t>(axis)];
     if (n < 1) refuse_request("--replicate: the numbers of copies must be 1 or more");

@@ -25,7 +25,7 @@ struct Outgoing {
 /// The list of outgoing particles, read batch by batch; never whole in memory. Rank-local.
 class Selection {
  public:
-  Selection(const pack::PackFile& file, const geometry::Box& box, const ConvertRequest& request)
+  Selection(const pack::PackFile& file, const geometry::Container& box, const ConvertRequest& request)
       : file_(&file), box_(box), trim_(request.trim), copies_(request.copies) {}
 
   /// Places in the list: particles times copies. Trimmed particles have a place and are passed over.
@@ -40,7 +40,7 @@ class Selection {
                    const std::function<void(const pack::ParticleRow&)>& take) const;
 
   const pack::PackFile* file_;
-  geometry::Box box_;
+  geometry::Container box_;
   Trim trim_;
   std::array<int, 2> copies_;
 };

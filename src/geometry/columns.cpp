@@ -19,7 +19,7 @@ int columns_along(double length, double reach) {
 }
 
 /// The widths that columns must have at least so that there are no more than `most`: `reach`, unless they would be.
-std::array<double, 2> least_widths(const Box& box, double reach, std::int64_t most) {
+std::array<double, 2> least_widths(const Container& box, double reach, std::int64_t most) {
   std::array<double, 2> least{reach, reach};
   const auto lateral = static_cast<std::size_t>(box.lateral_axes());
   const auto columns = [&] {
@@ -54,7 +54,7 @@ std::vector<int> around(int c, int n, bool periodic) {
 
 }  // namespace
 
-ColumnGrid::ColumnGrid(const Box& box, double reach, std::int64_t most) : box_(box) {
+ColumnGrid::ColumnGrid(const Container& box, double reach, std::int64_t most) : box_(box) {
   assert(reach > 0.0 && most >= 9 && static_cast<double>(most) <= countable);
   const std::array<double, 2> least = least_widths(box, reach, most);
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::geometry {
 
@@ -18,9 +18,9 @@ class ColumnGrid {
   ColumnGrid() = default;
   /// At most `most` columns in all, wider ones where they would be more; but a periodic axis keeps three if it has room
   /// for them, and every axis one. Preconditions (asserted): reach > 0, 9 <= most <= 2^30.
-  ColumnGrid(const Box& box, double reach, std::int64_t most = std::int64_t{1} << 30);
+  ColumnGrid(const Container& box, double reach, std::int64_t most = std::int64_t{1} << 30);
 
-  [[nodiscard]] const Box& box() const noexcept { return box_; }
+  [[nodiscard]] const Container& box() const noexcept { return box_; }
   [[nodiscard]] std::array<int, 2> counts() const noexcept { return counts_; }
   [[nodiscard]] std::array<double, 2> widths() const noexcept { return widths_; }  ///< [m]
   [[nodiscard]] ColumnIndex size() const noexcept { return ColumnIndex{counts_[0]} * counts_[1]; }
@@ -45,7 +45,7 @@ class ColumnGrid {
  private:
   [[nodiscard]] double axis_distance(std::size_t axis, double x, int coordinate_of_column) const noexcept;
 
-  Box box_;
+  Container box_;
   std::array<int, 2> counts_{1, 1};
   std::array<double, 2> widths_{};
   std::array<double, 2> inverse_widths_{};

@@ -73,7 +73,7 @@ void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const
 
 // `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
 void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) {
-  const geometry::Box& box = scene_->box;
+  const geometry::Container& box = scene_->box;
   const bool graded = scene_->features.graded && touching > 0.0;
   Search s{x_[0].data(),
            x_[1].data(),
@@ -127,24 +127,13 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
 }
 
 void Neighborhood::build_walls(const particles::Store& store) {
-  const geometry::Box& box = scene_->box;
   walls_.particle.clear();
   walls_.wall.clear();
-  const auto add = [this](LocalIndex i, Wall wall) {
-    walls_.particle.push_back(i);
-    walls_.wall.push_back(wall);
-  };
-  constexpr std::array<Wall, 2> low{Wall::x_low, Wall::y_low};
-  constexpr std::array<Wall, 2> high{Wall::x_high, Wall::y_high};
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const Vec3 x = store.position(i);
-    const double range = store.radius(i) + scene_->skin;
-    if (x[static_cast<std::size_t>(box.vertical())] < range) add(i, Wall::floor);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
-      if (box.periodic[a]) continue;
-      if (x[a] < range) add(i, low[a]);
-      if (box.size[a] - x[a] < range) add(i, high[a]);
-    }
+    scene_->box.near_walls(store.position(i), store.radius(i) + scene_->skin, [&](Wall wall, double) {
+      walls_.particle.push_back(i);
+      walls_.wall.push_back(wall);
+    });
   }
 }
 

@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::neighbor {
 
-/// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only).
-enum class Wall : std::int32_t { floor = 0, x_low = 1, x_high = 2, y_low = 3, y_high = 4 };
+/// A wall of the container.
+using Wall = geometry::Surface;
 
 /// Half list: each pair that has an owned end once. first[p] is an owned slot, ascending in p; second[p] > first[p], an
 /// owned or a ghost slot (>= Store::owned()). A pair across a rank border is listed on both ranks, each with its own

@@ -140,15 +140,10 @@ Alarm Neighborhood::follow(particles::Store& store, double max_speed, double tim
 }
 
 bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const {
-  const geometry::Box& box = scene_->box;
+  const geometry::Container& box = scene_->box;
   const Vec3 x = store.position(i);
-  const double r = store.radius(i);
   const double z = x[static_cast<std::size_t>(box.vertical())];
-  bool inside = z > -r && z < highest * (box.height() + scene_->in.layers.thickness);
-  for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
-    inside = inside && x[a] > -r && x[a] < box.size[a] + r;
-  }
-  return inside;
+  return box.beyond(x) < store.radius(i) && z < highest * (box.height() + scene_->in.layers.thickness);
 }
 
 void Neighborhood::migrate(particles::Store& store, comm::Purpose purpose) const {
@@ -294,7 +289,7 @@ void Neighborhood::remember_positions(const particles::Store& store) {
 }
 
 double Neighborhood::largest_displacement(const particles::Store& store) const {
-  const geometry::Box& box = scene_->box;
+  const geometry::Container& box = scene_->box;
   double largest = 0.0;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double* record = store.record(i);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::observe {
 

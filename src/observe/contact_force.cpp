@@ -36,18 +36,6 @@ Vec3 force(const dynamics::Law& law, const dynamics::LawConstants& kind, const M
   return on_first;
 }
 
-/// Unit vector from a particle to the wall.
-Vec3 towards(const geometry::Box& box, neighbor::Wall wall) {
-  Vec3 n{};
-  const int number = static_cast<int>(wall);
-  if (wall == neighbor::Wall::floor) {
-    n[static_cast<std::size_t>(box.vertical())] = -1.0;
-  } else {
-    n[static_cast<std::size_t>((number - 1) / 2)] = number % 2 == 0 ? 1.0 : -1.0;
-  }
-  return n;
-}
-
 }  // namespace
 
 double normal_force(const dynamics::Law& law, const dynamics::LawConstants& kind, const Reduced& reduced,
@@ -75,13 +63,13 @@ Vec3 pair_force(const particles::Store& store, const dynamics::Law& law, LocalIn
                 .reduced = {1.0 / (ki + kj), 1.0 / (law.mass_factor * (ki * ki * ki + kj * kj * kj))}});
 }
 
-Vec3 wall_force(const particles::Store& store, const geometry::Box& box, const dynamics::Law& law, LocalIndex i,
+Vec3 wall_force(const particles::Store& store, const geometry::Container& box, const dynamics::Law& law, LocalIndex i,
                 neighbor::Wall wall, double penetration) {
   const double r = store.radius(i);
   const Vec3 v = store.velocity(i);
   const Vec3 w = store.spin(i);
   return force(law, law.wall,
-               {.normal = towards(box, wall),
+               {.normal = box.plane(wall).normal(),
                 .overlap = penetration,
                 .velocity = {-v[0], -v[1], -v[2]},
                 .roll = {r * w[0], r * w[1], r * w[2]},

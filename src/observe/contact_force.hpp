@@ -20,7 +20,7 @@ struct Reduced {
                               const Touch& at);
 
 /// Force [N] on i from a wall that it is `penetration` [m] deep in. Local.
-[[nodiscard]] Vec3 wall_force(const particles::Store& store, const geometry::Box& box, const dynamics::Law& law,
+[[nodiscard]] Vec3 wall_force(const particles::Store& store, const geometry::Container& box, const dynamics::Law& law,
                               LocalIndex i, neighbor::Wall wall, double penetration);
 
 }  // namespace packmpi::observe

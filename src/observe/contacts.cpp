@@ -17,7 +17,7 @@ struct PairSums {
 
 /// Each touching pair adds one to both its ends that are owned here. A pair across a border is listed on both ranks,
 /// and one of them counts it in the sums.
-PairSums count_pairs(const particles::Store& store, const geometry::Box& box, const neighbor::PairList& pairs,
+PairSums count_pairs(const particles::Store& store, const geometry::Container& box, const neighbor::PairList& pairs,
                      GlobalId frozen_below, std::vector<std::int32_t>& of_particle) {
   PairSums sums;
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <voro++/voro++.hh>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "geometry/volume.hpp"
 #include "observe/around.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 // Volume of the cell of particle i [m3], 2D: [m2]; none if particles beyond the range might cut it.
 std::optional<double> cell_volume(const Specimen& pack, LocalIndex i, std::span<const LocalIndex> neighbours) {
-  const geometry::Box& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.box;
   const bool plane = box.dimension == 2;
   const Vec3 x = pack.store.position(i);
   const double r = pack.store.radius(i);

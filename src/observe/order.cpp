@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "observe/around.hpp"
 
 namespace packmpi::observe {

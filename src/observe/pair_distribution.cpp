@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "observe/analysis.hpp"
 #include "observe/measure.hpp"
 
@@ -28,7 +28,7 @@ struct Interior {
 };
 
 Interior interior_of(const Specimen& pack, double range) {
-  const geometry::Box& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.box;
   const auto v = static_cast<std::size_t>(box.vertical());
   Interior in;
   for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {

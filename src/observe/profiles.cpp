@@ -25,7 +25,7 @@ bool in_bulk(const scene::Scene& scene, double height) {
 }
 
 Profile density_profile(const Specimen& pack, int axis) {
-  const geometry::Box& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.box;
   const auto a = static_cast<std::size_t>(axis);
   const bool vertical = axis == box.vertical();
   const double length = vertical ? top(pack.comm, pack.store, pack.scene) : box.size[a];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "neighbor/lists.hpp"
 #include "particles/store.hpp"
 
@@ -16,7 +16,8 @@ struct Touch {
 };
 
 /// Slots i and j, owned or ghosts. Antisymmetric to the last bit: the same overlap from either side.
-[[nodiscard]] inline Touch touch(const particles::Store& store, const geometry::Box& box, LocalIndex i, LocalIndex j) {
+[[nodiscard]] inline Touch touch(const particles::Store& store, const geometry::Container& box, LocalIndex i,
+                                 LocalIndex j) {
   const Vec3 d = geometry::separation(box, store.position(i), store.position(j));
   const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   const double inverse = distance > 0.0 ? 1.0 / distance : 0.0;
@@ -32,23 +33,9 @@ struct Touch {
 }
 
 /// Depth by which owned particle `i` is inside a wall [m]; positive: it touches.
-[[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Box& box, LocalIndex i,
-                                             neighbor::Wall wall) {
-  const Vec3 x = store.position(i);
-  const double r = store.radius(i);
-  switch (wall) {
-    case neighbor::Wall::floor:
-      return r - x[static_cast<std::size_t>(box.vertical())];
-    case neighbor::Wall::x_low:
-      return r - x[0];
-    case neighbor::Wall::x_high:
-      return r - (box.size[0] - x[0]);
-    case neighbor::Wall::y_low:
-      return r - x[1];
-    case neighbor::Wall::y_high:
-      return r - (box.size[1] - x[1]);
-  }
-  return 0.0;  // not reached: the switch is complete
+[[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Container& box,
+                                             LocalIndex i, neighbor::Wall wall) {
+  return store.radius(i) - box.plane(wall).distance(store.position(i));
 }
 
 }  // namespace packmpi::observe

@@ -15,21 +15,13 @@ bool is_finite(const particles::Store& store, LocalIndex i) {
          std::isfinite(store.radius(i));
 }
 
-bool is_outside(const Vec3& x, const geometry::Box& box) {
-  if (x[static_cast<std::size_t>(box.vertical())] < 0.0) return true;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {
-    if (x[axis] < 0.0 || x[axis] > box.size[axis]) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Validity validity(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
   std::array<std::int64_t, 3> counts{store.owned(), 0, 0};
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     if (!is_finite(store, i)) ++counts[1];
-    if (is_outside(store.position(i), scene.box)) ++counts[2];
+    if (scene.box.beyond(store.position(i)) > 0.0) ++counts[2];
   }
   comm.sum(counts);
   return {.found = counts[0], .non_finite = counts[1], .outside = counts[2]};

@@ -23,7 +23,7 @@ struct Insertion {
   std::int64_t inserted = 0;
   std::int64_t trials = 0;    ///< positions tried
   double solid_volume = 0.0;  ///< [m3] (2D: m2)
-  std::int64_t target = 0;     ///< particles needed to reach phi_0
+  std::int64_t target = 0;    ///< particles needed to reach phi_0
 };
 
 /// How many particles the layer needs: the smallest n whose radii 0 .. n-1 have solid volume >= fraction * region
@@ -44,11 +44,11 @@ inline constexpr int size_classes = 8;
 
 /// Collective. Throws every particle's first trial, then the second trials of those rejected, and so on, in the order
 /// (size class, attempt, particle); a trial is kept if it overlaps none kept before it. Appends the placed particles of
-/// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming target, placed and trials, if a particle
-/// is unplaced after layers.attempts trials; or earlier, once so few trials find room that the attempts left cannot
-/// suffice. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws leaves
-/// with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory, messages only to the
-/// ranks where trials fall.
+/// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming target, placed and trials, if a
+/// particle is unplaced after layers.attempts trials; or earlier, once so few trials find room that the attempts left
+/// cannot suffice. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws
+/// leaves with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory, messages only to
+/// the ranks where trials fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
                                const LayerRegion& region, particles::Store& store,
                                const std::function<void()>& between_volleys = {});
@@ -59,6 +59,6 @@ inline constexpr int size_classes = 8;
                          std::uint32_t attempt);
 
 /// True if two spheres overlap, by the one formula used everywhere in this room (shortest image on periodic axes).
-[[nodiscard]] bool overlap(const geometry::Box& box, const Vec3& a, double ra, const Vec3& b, double rb);
+[[nodiscard]] bool overlap(const geometry::Container& box, const Vec3& a, double ra, const Vec3& b, double rb);
 
 }  // namespace packmpi::rsa

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/types.hpp"
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::rsa {
 
@@ -38,7 +38,7 @@ struct Turn {
 /// Distances in a box, prepared for hot loops: a wall axis has an infinite period.
 class Metric {
  public:
-  explicit Metric(const geometry::Box& box) {
+  explicit Metric(const geometry::Container& box) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (box.periodic[axis]) period_[axis] = box.size[axis];
     }

@@ -45,7 +45,7 @@ int cells_along(double length, double width) { return std::max(1, static_cast<in
 }  // namespace
 
 CellAxis lateral_axis(const Ownership& ownership, std::size_t axis, double width, double margin) {
-  const geometry::Box& box = ownership.grid().box();
+  const geometry::Container& box = ownership.grid().box();
   const double column = ownership.grid().widths()[axis];
   const auto [first_column, columns] = shortest_run(used_coordinates(ownership, axis), box.periodic[axis]);
   CellAxis cells;

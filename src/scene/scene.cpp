@@ -121,8 +121,8 @@ int size_levels(const Sizes& sizes) {
   return levels;
 }
 
-geometry::Box box_of(const input::Container& container) {
-  geometry::Box box;
+geometry::Container box_of(const input::Container& container) {
+  geometry::Container box;
   box.dimension = container.dimension;
   std::ranges::copy(container.size, box.size.begin());
   for (std::size_t axis = 0; axis < container.boundary.size(); ++axis) {

@@ -2,8 +2,8 @@
 #pragma once
 #include <cstdint>
 
-#include "geometry/box.hpp"
 #include "geometry/columns.hpp"
+#include "geometry/container.hpp"
 #include "input/input.hpp"
 #include "particles/layout.hpp"
 #include "scene/sizes.hpp"
@@ -35,7 +35,7 @@ struct Stage {
 /// The scene. `in` is what was asked; the rest is derived from it.
 struct Scene {
   input::Input in;
-  geometry::Box box;
+  geometry::Container box;
   Features features;
   Sizes sizes;              ///< the size distribution: radius of (layer, particle), bounds
   double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off

@@ -13,11 +13,11 @@
 namespace packmpi::geometry {
 namespace {
 
-Box box3(double lx, double ly, bool px, bool py) { return {3, {lx, ly, 1.0}, {px, py}}; }
-Box box2(double lx, bool px) { return {2, {lx, 1.0, 0.0}, {px, false}}; }
+Container box3(double lx, double ly, bool px, bool py) { return {3, {lx, ly, 1.0}, {px, py}}; }
+Container box2(double lx, bool px) { return {2, {lx, 1.0, 0.0}, {px, false}}; }
 
-std::vector<Box> boxes() {
-  std::vector<Box> all;
+std::vector<Container> boxes() {
+  std::vector<Container> all;
   for (const bool px : {false, true}) {
     for (const bool py : {false, true}) {
       all.push_back(box3(3.0, 3.0, px, py));
@@ -54,7 +54,7 @@ TEST(Shortest, IsAntisymmetricAndShort) {
   EXPECT_EQ(shortest(-0.5 * period, period), -0.5 * period);
 }
 
-TEST(Box, Axes) {
+TEST(Container, Axes) {
   EXPECT_EQ(box3(2.0, 3.0, false, false).floor_area(), 6.0);
   EXPECT_EQ(box3(2.0, 3.0, false, false).height(), 1.0);
   EXPECT_EQ(box3(2.0, 3.0, false, false).lateral_axes(), 2);
@@ -80,7 +80,7 @@ TEST(ColumnGrid, ColumnsAreAsManyAsFitTheReach) {
 }
 
 TEST(ColumnGrid, AreWiderWhereTheyWouldBeTooMany) {
-  for (const Box& box : boxes()) {  // few enough: nothing changes
+  for (const Container& box : boxes()) {  // few enough: nothing changes
     const ColumnGrid few(box, 1.0, 100);
     EXPECT_EQ(few.counts(), ColumnGrid(box, 1.0).counts());
     EXPECT_EQ(few.widths(), ColumnGrid(box, 1.0).widths());
@@ -132,7 +132,7 @@ int steps(int a, int b, int n, bool periodic) {
 }
 
 TEST(ColumnGrid, NeighborsAreThoseThatTouchEachOnce) {
-  for (const Box& box : boxes()) {
+  for (const Container& box : boxes()) {
     const ColumnGrid grid(box, 1.0);
     const auto [nx, ny] = grid.counts();
     std::vector<ColumnIndex> got{99};
@@ -161,7 +161,7 @@ TEST(ColumnGrid, ThreePeriodicColumnsAreAllNeighbors) {
 
 /// The shortest way to a point of a fine raster of the column.
 double sampled_distance(const ColumnGrid& grid, const Vec3& p, ColumnIndex column) {
-  const Box& box = grid.box();
+  const Container& box = grid.box();
   const auto [nx, ny] = grid.counts();
   const auto [wx, wy] = grid.widths();
   constexpr int raster = 64;
@@ -181,7 +181,7 @@ double sampled_distance(const ColumnGrid& grid, const Vec3& p, ColumnIndex colum
 TEST(ColumnGrid, DistanceAgreesWithSampledPoints) {
   std::mt19937_64 random(3);
   const auto unit = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
-  for (const Box& box : boxes()) {
+  for (const Container& box : boxes()) {
     const ColumnGrid grid(box, 1.0);
     for (int i = 0; i < 20; ++i) {
       const Vec3 p{unit() * box.size[0], box.dimension == 3 ? unit() * box.size[1] : unit(), unit()};

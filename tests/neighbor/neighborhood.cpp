@@ -41,7 +41,7 @@ std::vector<Ball> cloud(const scene::Scene& scene, std::size_t count) {
   return balls;
 }
 
-double distance(const geometry::Box& box, const Vec3& a, const Vec3& b) {
+double distance(const geometry::Container& box, const Vec3& a, const Vec3& b) {
   double squared = 0.0;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.dimension); ++axis) {
     double d = std::abs(a[axis] - b[axis]);

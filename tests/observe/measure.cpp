@@ -56,7 +56,7 @@ std::vector<Grain> random_grains(int dimension, std::size_t count, const Vec3& s
 }
 
 /// The definition, one column at a time.
-double slow_surface(const std::vector<Grain>& grains, const geometry::Box& box, double largest) {
+double slow_surface(const std::vector<Grain>& grains, const geometry::Container& box, double largest) {
   const int nx = std::max(1, static_cast<int>(box.size[0] / (2.0 * largest)));
   const int ny = box.dimension == 3 ? std::max(1, static_cast<int>(box.size[1] / (2.0 * largest))) : 1;
   long double sum = 0.0L;

@@ -36,7 +36,7 @@ TEST(Count, SmallestThatFillsTheFraction) {
 }
 
 TEST(Overlap, IsThatOfTheNearestImages) {
-  const geometry::Box box{3, {1.0, 0.7, 2.0}, {true, false}};
+  const geometry::Container box{3, {1.0, 0.7, 2.0}, {true, false}};
   EXPECT_TRUE(rsa::overlap(box, {0.05, 0.3, 0.5}, 0.06, {0.95, 0.3, 0.5}, 0.06));
   EXPECT_FALSE(rsa::overlap(box, {0.3, 0.02, 0.5}, 0.06, {0.3, 0.68, 0.5}, 0.06));
   EXPECT_FALSE(rsa::overlap(box, {0.25, 0.25, 0.5}, 0.125, {0.5, 0.25, 0.5}, 0.125)) << "touching is not overlapping";

@@ -14,7 +14,7 @@ using input::Decomposition;
 constexpr std::array kinds{Decomposition::slab, Decomposition::pencil, Decomposition::metis};
 
 geometry::ColumnGrid grid_of(int dimension, double lx, double ly, bool periodic, double reach) {
-  geometry::Box box;
+  geometry::Container box;
   box.dimension = dimension;
   box.size = dimension == 3 ? Vec3{lx, ly, 1.0} : Vec3{lx, 1.0, 0.0};
   box.periodic = {periodic, periodic && dimension == 3};

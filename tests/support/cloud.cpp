@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::support {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 
 namespace packmpi::oracle {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
-#include "geometry/box.hpp"
+#include "geometry/container.hpp"
 #include "neighbor/lists.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
@@ -68,7 +68,7 @@ inline neighbor::PairList all_pairs(const particles::Store& store) {
   return pairs;
 }
 
-inline neighbor::WallList all_walls(const particles::Store& store, const geometry::Box& box) {
+inline neighbor::WallList all_walls(const particles::Store& store, const geometry::Container& box) {
   neighbor::WallList walls;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     for (int wall = 0; wall <= 2 * box.lateral_axes(); ++wall) {
