@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <filesystem>
 #include <map>
 
+#include "base/memory.hpp"
+#include "base/timer.hpp"
+#include "rsa/insert.hpp"
 #include "run/make_pack.hpp"
 #include "support/scenes.hpp"
 
@@ -124,6 +128,78 @@ TEST_F(Counters, AreTheSameInEachRun) {
     ASSERT_NE(memory, nullptr);
     EXPECT_GT(memory->max(), 1 << 20);  // no MPI program is smaller than a megabyte
   }
+}
+
+// Two layers in the air, of which the lower one is frozen.
+void insert_two(Bed& bed, double thickness) {
+  for (std::uint32_t layer = 0; layer < 2; ++layer) {
+    bed.first_ids.push_back(bed.count);
+    const rsa::LayerRegion region{layer, thickness * layer, thickness, bed.count};
+    bed.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
+  }
+  bed.freeze_older();
+  bed.neighborhood.rebuild(bed.store);
+}
+
+TEST_F(Counters, AddUpStepByStep) {
+  const comm::Comm world(MPI_COMM_WORLD);
+  const scene::Scene scene = scene::build(scene_of(input::Decomposition::pencil));
+  Bed bed(world, scene);
+  insert_two(bed, scene.in.layers.thickness);
+  std::map<std::string, std::int64_t> expected{{"rebuilds", bed.neighborhood.rebuilds()}};
+  for (int step = 0; step < 120; ++step) {
+    expected["particle_steps"] += bed.store.owned();
+    expected["frozen_steps"] += bed.neighborhood.frozen().owned();
+    expected["ghost_steps"] += bed.neighborhood.halo().ghosts();
+    expected["pair_steps"] += std::ssize(bed.neighborhood.pairs().first);
+    bed.stepper.advance(bed.store, bed.neighborhood, 1);
+  }
+  EXPECT_GT(bed.neighborhood.rebuilds(), expected["rebuilds"]);
+  expected["rebuilds"] = bed.neighborhood.rebuilds();
+  expected["owned"] = bed.store.owned();
+  expected["ghosts"] = bed.neighborhood.halo().ghosts();
+  expected["listed_pairs"] = std::ssize(bed.neighborhood.pairs().first);
+  expected["touching_pairs"] = 1000 + world.rank();
+  report::RunRecord record;
+  count(bed, 1000 + world.rank(), record);
+  for (auto& [name, mine] : expected) {
+    const std::vector<std::int64_t> all = world.gather(std::vector<std::int64_t>{mine});
+    const report::RankNumbers* found = report::find(record.counters, name);
+    if (world.rank() != 0) continue;
+    ASSERT_NE(found, nullptr) << name;
+    EXPECT_EQ(found->of_rank, all) << name;
+    EXPECT_GT(found->sum(), 0) << name;
+  }
+}
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// What is measured by clocks lies between what the test's own clocks say before and after, and in itself.
+TEST_F(Counters, CostsLieBetweenTheClocksAroundThem) {
+  const double cpu_before = processor_seconds();
+  const std::int64_t memory_before = memory_high_water();
+  const Stopwatch watch;
+  const report::RunRecord record = make(2, input::Decomposition::slab);
+  const double wall = watch.seconds();
+  const double cpu_after = processor_seconds();
+  const std::int64_t memory_after = memory_high_water();
+  if (record.costs.empty()) return;  // not rank 0
+  const auto cost = [&](const char* name) { return report::find(record.costs, name)->of_rank.at(0); };
+  const auto seconds = [&](const char* name) { return 1e-9 * static_cast<double>(cost(name)); };
+  EXPECT_GE(seconds("cpu"), cpu_before);
+  EXPECT_LE(seconds("cpu"), cpu_after);
+  EXPECT_LE(seconds("stepping") + seconds("inserting"), wall);
+  EXPECT_LE(seconds("waiting") + seconds("refreshing") + seconds("rebuilding"), seconds("stepping"));
+  for (const char* name : {"stepping", "waiting", "refreshing"}) {
+    EXPECT_GT(seconds(name), 1e-9 * static_cast<double>(record.steps)) << name;  // no step is done in a nanosecond
+  }
+  EXPECT_GT(seconds("rebuilding"), 1e-9 * static_cast<double>(sum_of(record, "rebuilds")));
+  EXPECT_GT(seconds("inserting"), 1e-9 * static_cast<double>(record.particles));
+  EXPECT_GE(cost("memory"), memory_before);
+  EXPECT_LE(cost("memory"), memory_after);
+  EXPECT_LE(cost("allocated"), cost("memory"));
+  const std::int64_t here = report::find(record.counters, "owned")->of_rank.at(0);
+  EXPECT_GE(cost("allocated"), here * 13 * static_cast<std::int64_t>(sizeof(double)));  // a record each at least
 }
 
 // Two ranks are one neighbour each: two messages a step, together position, velocity and spin of each ghost.
