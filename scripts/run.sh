@@ -4,7 +4,16 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 [[ $# -gt 0 ]] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+say() { echo "run: $*" >&2; }
+start=$SECONDS
 "$here/setup.sh"
+program=${BUILD:-$(dirname "$here")/build}/packmpi
+if [[ -e $program ]]; then
+  say "bringing $program up to date"
+else
+  say "building $program, once: three to four minutes on two cores"
+fi
 "$here/build.sh"
+say "ready after $((SECONDS - start)) s; packmpi on ${NP:-$(nproc)} ranks"
 source "$here/mpi_env.sh"
-exec mpirun -n "${NP:-$(nproc)}" "${BUILD:-$here/../build}/packmpi" "$@"
+exec mpirun -n "${NP:-$(nproc)}" "$program" "$@"

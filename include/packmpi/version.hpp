@@ -4,10 +4,10 @@
 
 namespace packmpi {
 
-/// The release, for example "0.1.0".
+/// The release, for example "0.2.0".
 [[nodiscard]] std::string_view version() noexcept;
 
-/// What git describes the sources as, for example "v0.1.0-3-g0123456789ab-dirty"; "unknown" outside a clone.
+/// What git describes the sources as, for example "v0.2.0-3-g0123456789ab-dirty"; "unknown" outside a clone.
 [[nodiscard]] std::string_view git_id() noexcept;
 
 /// The compiler the library was built with, for example "GNU 12.2.0".

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Runs the shell commands of README.md and doc/*.md, scaled down; and reads the README's scene.
+"""Runs the shell commands of README.md and doc/*.md, block by block, scaled down; and reads the README's scene.
 
 usage: doc_commands.py ROOT BUILD FOLDER
-Every command of a ```sh block must be named in COMMANDS, with what makes it small, or the block must be marked in the text, on
-the line above it: <!-- not run: why -->. Every command named must be on a page. They run in a copy of the tree's top level
-made of links, so that build/ is BUILD and outputs stay in FOLDER; NAME is quickstart. Exit code 77: a Python package is missing.
+A block of ```sh is one shell, as a reader would paste it: its environment is that of a fresh login (nothing that this test, CTest or CI have
+set for MPI), so what Open MPI needs must stand in the block. Every command must be named in COMMANDS, with what makes it small, or the
+block must be marked in the text, on the line above it: <!-- not run: why -->. Every command named must be on a page. A block that was run is not
+run again for another page. They run in a copy of the tree's top level made of links, so that build/ is BUILD and outputs stay in
+FOLDER; NAME is quickstart. Exit code 77: a Python package is missing.
 """
 import os
 import pathlib
@@ -14,23 +16,24 @@ import subprocess
 import sys
 
 SMALL = "--set layers.duration=0.01 --quiet"
-# command -> what is added to make it small (or the whole of a smaller one, if it begins like it); in the order they are run
+# command -> what is added to make it small, or a pair: what is replaced by what in it
 COMMANDS = {
+    "source scripts/mpi_env.sh": "",
     "scripts/run.sh input/quickstart.toml": SMALL,
-    "mpirun -n 4 build/packmpi input/quickstart.toml -o results": SMALL,
+    "mpirun -n 2 build/packmpi input/quickstart.toml -o results": SMALL,
     "build/packmpi check input/quickstart.toml": "",
     "build/packmpi input/quickstart.toml --seed 2 --set layers.duration=0.5 -o results/seed_2": SMALL,
     "build/packmpi render quickstart.hdf -o quickstart.png --color contacts": "--size 200",
+    "build/packmpi report quickstart.hdf": "--size 150",
     "mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 2000 || test $? = 75":
-        ("mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 150 " + SMALL + " || test $? = 75"),
-    "mpirun -n 3 build/packmpi input/quickstart.toml -o night --restart auto": SMALL,
-    "scripts/study/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made",
+        ("--max-steps 2000", "--max-steps 150 " + SMALL),
+    "build/packmpi input/quickstart.toml -o night --restart auto": SMALL,
+    "scripts/study/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made || test $? = 3",   # a target was missed
     "packmpi estimate input/quickstart.toml": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --floor 0.6,open --no-probe --json": "",
     "packmpi analyze quickstart.hdf": "",
     "packmpi plot quickstart.hdf": "--only density",
-    "build/packmpi report quickstart.hdf": "--size 150",
     "packmpi report quickstart.hdf": "--size 150",
     "packmpi convert quickstart.hdf --to lammps": "",
     "lmp -in quickstart.lammps.in": "-var steps 2 -screen none",
@@ -42,7 +45,7 @@ LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.ste
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "quickstart.lammps.data", "made/figure_4.png"]
-TARGETS_MISSED = 3  # what reproduce.py says of packs that were given no time
+KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
 
 problems = []
 
@@ -51,18 +54,20 @@ def blocks(text, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
-def commands_of(text):
-    """Commands of the shell blocks that are not marked, and what is wrong with the marks."""
-    lines, inside, marked, found = text.splitlines(), False, False, []
+def blocks_of(text):
+    """The shell blocks that are not marked, each a list of commands, and what is wrong with the marks."""
+    lines, block, marked, found = text.splitlines(), None, False, []
     for before, line in zip(["", *lines], lines):
         if line == "```sh":
-            inside, marked = True, before.startswith("<!-- not run:")
+            block, marked = [], before.startswith("<!-- not run:")
             if marked and not re.match(r"<!-- not run: .{10,} -->$", before):
                 problems.append(f"a mark that does not say why: {before}")
         elif line == "```":
-            inside = False
-        elif inside and not marked and line.strip():
-            found.append(line.replace("NAME", "quickstart"))
+            if block and not marked:
+                found.append(block)
+            block = None
+        elif block is not None and line.strip():
+            block.append(line.replace("NAME", "quickstart"))
     return found
 
 
@@ -82,16 +87,35 @@ def make_tree(root, build, folder):
     (folder / "build").symlink_to(build)
 
 
-def run(command, extra, folder):
-    build = str((folder / "build").resolve())
-    environment = {**os.environ, "NP": "2", "BUILD": build, "PATH": f"{build}:{os.environ['PATH']}"}
-    text = extra if extra.startswith("mpirun") else f"{command} {extra}"
-    done = subprocess.run(text, shell=True, cwd=folder, env=environment, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    allowed = (0, TARGETS_MISSED) if command == "scripts/study/reproduce.py" else (0,)
-    print(f"$ {text}\n{done.stdout[-1500:]}")
-    if done.returncode not in allowed:
-        problems.append(f"exit code {done.returncode}: {command}")
+def small(command):
+    """The command as it is run here."""
+    change = COMMANDS.get(command, "")
+    return command.replace(*change) if isinstance(change, tuple) else f"{command} {change}".strip()
+
+
+def environment(folder):
+    """That of a fresh login, with the programs of this build and those that it needs in PATH."""
+    build = (folder / "build").resolve()
+    places = [str(build)] + [str(pathlib.Path(where).parent) for where in map(shutil.which, ("mpirun", "cmake", "lmp")) if where]
+    return {**{name: os.environ[name] for name in KEPT if name in os.environ}, "BUILD": str(build),
+            "PATH": ":".join(dict.fromkeys([*places, "/usr/bin", "/bin"]))}
+
+
+def run(block, folder):
+    """Runs a block's commands in one shell, which stops where one fails."""
+    text = "\n".join(["set -e", *map(small, block)])
+    done = subprocess.run(["bash", "--noprofile", "--norc", "-c", text], cwd=folder, env=environment(folder), text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    print("\n".join(f"$ {small(command)}" for command in block) + f"\n{done.stdout[-1500:]}")
+    if done.returncode != 0:
+        problems.append(f"exit code {done.returncode}: {block}: {done.stdout[-300:]}")
+
+
+def check_cleanliness(folder):
+    """What the scripts set for MPI does not reach the blocks."""
+    left = [name for name in environment(folder) if name.startswith(("OMPI", "PMIX", "PACKMPI"))]
+    if left:
+        problems.append(f"the shell is not clean: {left}")
 
 
 def check_scene(text, root, folder):
@@ -111,26 +135,30 @@ def main():
         print("skipped: h5py or matplotlib is missing (scripts/setup.sh --plots)")
         return 77
     pages = ["README.md", *sorted(f"doc/{path.name}" for path in (root / "doc").glob("*.md"))]
-    there = {page: commands_of((root / page).read_text()) for page in pages if page not in ELSEWHERE}
+    there = {page: blocks_of((root / page).read_text()) for page in pages if page not in ELSEWHERE}
     for page, test in ELSEWHERE.items():
         if page.split("/")[-1] not in (root / "tests" / "system" / test).read_text():
             problems.append(f"{test} does not speak of {page}")
+    every = [block for page in there.values() for block in page]
     problems.extend(f"{page} has a command that is neither tested nor marked: {line}"
-                    for page, lines in there.items() for line in lines if line not in COMMANDS)
-    problems.extend(f"a command that is tested is on no page: {line}" for line in COMMANDS
-                    if not any(line in lines for lines in there.values()))
+                    for page, found in there.items() for block in found for line in block if line not in COMMANDS)
+    problems.extend(f"a command that is tested is on no page: {line}" for line in COMMANDS if not any(line in block for block in every))
     make_tree(root, build, folder)
+    check_cleanliness(folder)
     installed = {"vtk": has("vtk") and shutil.which("xvfb-run") is not None, "lmp": shutil.which("lmp") is not None}
-    for command, extra in COMMANDS.items():
-        needed = next((what for word, what in NEEDS.items() if word in command), None)
-        if needed and not installed[needed]:
-            print(f"passed over, without {needed}: {command}")
-        else:
-            run(command, extra, folder)
+    passed_over = {line for line in COMMANDS for word, what in NEEDS.items() if word in line and not installed[what]}
+    for line in passed_over:
+        print(f"passed over, what it needs is not installed: {line}")
+    done = []
+    for block in every:
+        block = [line for line in block if line not in passed_over]
+        if block and block not in done:
+            run(block, folder)
+            done.append(block)
     leaves = LEAVES + (["quickstart.png"] if installed["vtk"] else [])
     problems.extend(f"no file {name}" for name in leaves if not (folder / name).exists())
     check_scene((root / "README.md").read_text(), root, folder)
-    print("\n".join(problems) or f"{sum(map(len, there.values()))} commands")
+    print("\n".join(problems) or f"{len(done)} blocks, {sum(map(len, done))} commands")
     return 1 if problems else 0
 
 

@@ -34,6 +34,17 @@ if(NOT text MATCHES "${VERSION}")
   message(FATAL_ERROR "packmpi --version said: ${text}")
 endif()
 
+# The tools in Python came along, and are found by the moved program; so are examples and documentation.
+run(${FOLDER}/moved/bin/packmpi report --help)
+if(NOT text MATCHES "usage: packmpi report")
+  message(FATAL_ERROR "packmpi report --help said: ${text}")
+endif()
+foreach(page README.md tutorial.md input/quickstart.toml)
+  if(NOT EXISTS ${FOLDER}/moved/share/doc/packmpi/${page})
+    message(FATAL_ERROR "${page} was not installed")
+  endif()
+endforeach()
+
 foreach(page man/man1/packmpi.1 bash-completion/completions/packmpi zsh/site-functions/_packmpi
         fish/vendor_completions.d/packmpi.fish)
   file(READ ${FOLDER}/moved/share/${page} text)

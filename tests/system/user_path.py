@@ -56,10 +56,17 @@ def edit(scene, text):
     scene.write_text("\n".join("\n".join([name, *lines, ""]) for name, lines in starter.items()))
 
 
+def fresh_login(program):
+    """The environment of one: nothing that CTest or CI have set for MPI, and the program's folder in PATH."""
+    kept = {name: os.environ[name] for name in ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER") if name in os.environ}
+    places = [program.parent, *(pathlib.Path(where).parent for where in map(shutil.which, ("mpirun", "lmp")) if where), "/usr/bin", "/bin"]
+    return {**kept, "PATH": ":".join(map(str, places))}
+
+
 def run(command, folder, environment):
-    """Output of a command, which must succeed."""
-    done = subprocess.run(command, shell=True, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT)
+    """Output of a command, or of the lines of a block, which must succeed."""
+    done = subprocess.run(["bash", "--noprofile", "--norc", "-c", f"set -e\n{command}"], cwd=folder, env=environment, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     print(f"$ {command}\n{done.stdout[-1500:]}")
     if done.returncode != 0:
         sys.exit(f"exit code {done.returncode}")
@@ -97,7 +104,7 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "scripts").symlink_to(root / "scripts")
-    environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}"}
+    environment = fresh_login(program)
     said = {}
     for language, content in blocks((root / "doc" / "tutorial.md").read_text()):
         if language == "csv":
@@ -105,7 +112,10 @@ def main():
         elif language == "toml":
             edit(folder / "gravel.toml", content)
         elif language == "sh":
-            for command in content.splitlines():
+            commands = content.splitlines()
+            if "mpirun" in content:   # in one shell, as it is pasted: what Open MPI needs stands before it
+                commands = [content.strip()]
+            for command in commands:
                 if command.startswith("lmp ") and not shutil.which("lmp"):
                     print("passed over: LAMMPS is not installed (scripts/setup.sh --readers)")
                     continue
