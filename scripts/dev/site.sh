@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the documentation as a site, build/site/index.html. A broken link and a page that is not on the site are errors.
+# Builds the documentation as a site, build/site/index.html. A broken link, a page that is not on the site, and a formula whose
+# asterisks were taken for emphasis are errors.
 # usage: scripts/dev/site.sh [folder]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -7,4 +8,10 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 for page in "$root"/doc/*.md; do
   grep -q "\b$(basename "$page")$" "$root/scripts/dev/site.yml" || { echo "site: $(basename "$page") is not named in scripts/dev/site.yml" >&2; exit 1; }
 done
-mkdocs build --strict --quiet --clean -f "$root/scripts/dev/site.yml" -d "$(realpath -m "${1:-$root/build/site}")"
+built=$(realpath -m "${1:-$root/build/site}")
+mkdocs build --strict --quiet --clean -f "$root/scripts/dev/site.yml" -d "$built"
+# "r* = r_i, m* = m_i" must stand between backticks: Markdown would take the asterisks away.
+if grep -noE '[[:alnum:]]<em>|<em> |<em>[^<]*[=^][^<]*</em>' "$built"/*.html; then
+  echo "site: asterisks of a formula were taken for emphasis; put it between backticks" >&2
+  exit 1
+fi
