@@ -7,7 +7,7 @@ Beds: settled beds of the paper's spheres between walls (rotation on, time step 
 tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
 of the mean); particle-steps a second, everything in. Brick: example 5.3 from nothing to the twelfth layer: wall time, and
 the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one. --quick: small
-scenes, to try the script. The tables replace the part of the document between its "compare" markers. 22 to 60 minutes.
+scenes, to try the script. The tables replace the blocks of the document between "compare ..." markers. 22 to 60 minutes.
 """
 import argparse
 import math
@@ -26,6 +26,7 @@ import measuring
 PEERS = measuring.ROOT / "scripts/study/peers"
 PAPER, FAST = "packmpi, `\"paper\"`", "packmpi, `\"balanced\"`"   # by fidelity
 RADIUS, HEIGHT = 0.02, 0.5   # [m] of example 5.3
+LARGE = 500000   # spheres of a bed, whose block is another
 
 
 class Machine:
@@ -72,7 +73,7 @@ def one_bed(machine, options, particles, deviation):
 
 
 def beds(machine, options):
-    """Rows: what, and for each run the rates by code."""
+    """Particles wanted, and a row: what, and for each run the rates by code."""
     rows = []
     for particles in options.beds:
         runs = {0: [], 0.1: []}
@@ -83,7 +84,7 @@ def beds(machine, options):
                 found.append(rates)
                 print(f"bed of {atoms[deviation]}, sd {deviation}, run {run + 1}: "
                       + ", ".join(f"{code} {rate * 1e-6:.1f}e6" for code, rate in rates.items()), flush=True)
-        rows += [(f"{atoms[sd]:,}, {'Gaussian' if sd else 'equal'}", found) for sd, found in runs.items()]
+        rows += [(particles, (f"{atoms[sd]:,}, {'Gaussian' if sd else 'equal'}", found)) for sd, found in runs.items()]
     return rows
 
 
@@ -164,17 +165,18 @@ def version(words, pattern):
     return got[1] if got else "of unknown version"
 
 
-def report(options, rows, found):
+def blocks(options, rows, found):
+    """What was measured, by name of its block in the document, each with its own date and commit."""
     lammps = version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)")
     liggghts = version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")
-    out = [f"{measuring.made_by('scripts/study/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. LAMMPS {lammps}, "
-           f"LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, sliding friction without history, rotation. "
-           f"Beds: {options.runs} runs of each, bricks: {options.seeds} seeds of each. Median (least to most); ratios are taken run by run.", ""]
-    if rows:
-        out += [*bed_table(rows), ""]
-    if found:
-        out += brick_table(found)
-    return "\n".join(out).rstrip()
+    made = (f"{measuring.made_by('scripts/study/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. "
+            f"LAMMPS {lammps}, LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, sliding friction without history, rotation. ")
+    spread = " of each. Median (least to most); ratios are taken run by run."
+    tables = {"compare brick": (f"{options.seeds} seeds", brick_table(found) if found else [])}
+    for name, wanted in (("compare beds", False), ("compare large beds", True)):
+        mine = [row for size, row in rows if (size >= LARGE) == wanted]
+        tables[name] = (f"{options.runs} runs", bed_table(mine) if mine else [])
+    return {name: "\n".join([made + what + spread, "", *table]) for name, (what, table) in tables.items() if table}
 
 
 def parse():
@@ -204,9 +206,9 @@ def main():
         machine = Machine(options.core, folder)
         rows = beds(machine, options)
         found = bricks(machine, options) if options.brick else {}
-    text = report(options, rows, found)
-    print(text)
-    measuring.write_block(options.doc, "compare", text)
+    for name, text in blocks(options, rows, found).items():
+        print(text)
+        measuring.write_block(options.doc, name, text)
 
 
 if __name__ == "__main__":

@@ -66,28 +66,17 @@ def run(options, folder, scene, settings, ranks):
             "bytes": summary["provenance"].get("bytes_per_particle"), **summary["achieved"]}
 
 
-def million_table(found):
-    out = ["| protocol | spheres | ranks | wall | particle-steps | a second of wall | MB, largest process | phi_bulk | coordination | mean overlap / r |",
-           "|---|---|---|---|---|---|---|---|---|---|"]
-    for name, words in (("million", "`\"balanced\"`, as in the file"), ("paper", "`\"paper\"`")):
-        if name not in found:
-            continue
-        f = found[name]
-        out.append(f"| {words} | {f['particles']:,} | {f['ranks']} | {f['wall'] / 60.0:.1f} min | {f['particle_steps']:.3g} | "
-                   f"{f['particle_steps'] / f['wall'] * 1e-6:.1f}e6 | {f['peak']:.0f} | {f['phi_bulk']:.4f} | {f['coordination']:.3f} | "
-                   f"{f['mean_overlap']:.3e} |")
-    if "million" in found and "paper" in found:
-        short, paper = found["million"], found["paper"]
-        out += ["", f"Balanced against the paper's protocol: phi_bulk {short['phi_bulk'] - paper['phi_bulk']:+.4f}, coordination "
-                f"{short['coordination'] - paper['coordination']:+.3f}, mean overlap x {short['mean_overlap'] / paper['mean_overlap']:.2f}; "
-                f"{short['layers']} and {paper['layers']} layers."]
-    return out
+def million_table(words, f):
+    """One run's figures."""
+    return ["| protocol | spheres | layers | ranks | wall | particle-steps | a second of wall | MB, largest process | phi_bulk | coordination | mean overlap / r |",
+            "|---|---|---|---|---|---|---|---|---|---|---|",
+            f"| {words} | {f['particles']:,} | {f['layers']} | {f['ranks']} | {f['wall'] / 60.0:.1f} min | {f['particle_steps']:.3g} | "
+            f"{f['particle_steps'] / f['wall'] * 1e-6:.1f}e6 | {f['peak']:.0f} | {f['phi_bulk']:.4f} | {f['coordination']:.3f} | "
+            f"{f['mean_overlap']:.3e} |"]
 
 
 def tall_table(found):
     rows = [figures for name, figures in found.items() if name.startswith("tall")]
-    if not rows:
-        return []
     cost = [f["own"] / f["particles"] for f in rows]
     out = [f"Least of {TALL_RUNS} runs; seconds are the program's own, from the scene to the written pack, without the start of MPI.", "",
            "| height, m | layers | spheres | particle-steps a sphere | s | s a sphere |", "|---|---|---|---|---|---|"]
@@ -113,10 +102,13 @@ def parse():
 def main():
     options = parse()
     found = {name: make(options, name, scene, settings, ranks) for name, scene, settings, ranks in cases(options)}
-    scale = "" if options.scale == 1.0 else f" --scale {options.scale:g}"
-    text = "\n".join([f"{measuring.made_by('scripts/study/large.py' + scale)}.", "", *million_table(found), "", *tall_table(found)])
-    print(text)
-    measuring.write_block(options.doc, "large", text.rstrip())
+    made = measuring.made_by("scripts/study/large.py" + ("" if options.scale == 1.0 else f" --scale {options.scale:g}"))
+    tables = {"million": lambda: million_table("`\"balanced\"`, as in the file", found["million"]),
+              "paper": lambda: million_table("`\"paper\"`", found["paper"]), "tall": lambda: tall_table(found)}
+    for name in options.only:   # a block each, of one date and commit
+        text = "\n".join([f"{made}.", "", *tables[name]()])
+        print(text)
+        measuring.write_block(options.doc, f"large {name}", text)
     if options.picture and "million" in found:
         subprocess.run([options.program, "render", options.results / "million/million.hdf", "-o",
                         measuring.ROOT / "doc/images/million.png"], check=True)

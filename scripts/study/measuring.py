@@ -13,6 +13,10 @@ from common import ENVIRONMENT, ROOT  # noqa: F401  (for the scripts that measur
 # What a pack may differ by from the reference protocol's, at equal inserted mass.
 BOUNDS = {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}
 
+# What the levels of x86-64 need beyond each other, the best first: enough to tell them apart.
+INSTRUCTION_SETS = {"x86-64-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}, "x86-64-v3": {"avx2", "fma", "bmi2"}}
+
+
 def bare_scene(file, folder):
     """input/FILE.toml without its own fidelity, step and duration, so that these come from the preset that a run names: keys of
     a scene win over its preset's. The copy's path, in `folder`."""
@@ -73,8 +77,12 @@ def commit():
 
 
 def machine():
+    """The CPU's model and the kernel's instruction set on it (PACKMPI_ARCH, or the best there is)."""
     lines = Path("/proc/cpuinfo").read_text().splitlines()
-    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown CPU")
+    about = {line.split(":")[0].strip(): line.split(":")[1].strip() for line in lines if ":" in line}
+    flags = set(about.get("flags", "").split())
+    best = next((name for name, wanted in INSTRUCTION_SETS.items() if wanted <= flags), "x86-64")
+    return f"{about.get('model name', 'unknown CPU')}, {os.environ.get('PACKMPI_ARCH', best)}"
 
 
 def made_by(script):
