@@ -16,7 +16,7 @@ namespace packmpi::exporters {
 namespace {
 
 constexpr std::int64_t batch_rows = 1 << 14;
-constexpr double volume_quanta = 0x1p32;  // of the largest sphere: exact integer sums of 2^30 particles and more
+constexpr double volume_quanta = 0x1p32;  // of the largest sphere: sums in 64 bits are exact for 2^30 particles
 
 double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 

@@ -115,7 +115,7 @@ std::vector<Key> general_keys() {
           "Names the pack among all packs of the scene: radii and positions are functions of it."),
     word_of("fidelity", at(&Input::fidelity), {"paper", "balanced", "draft"}, "paper",
           "Preset: what keys are that the scene does not give. \"paper\": a step of 1e-4 s, 1.0 s a layer, all particles move; "
-          "\"balanced\", \"draft\": cheaper, see \"Presets\" above. Without the key, each key has its own default."),
+          "\"balanced\", \"draft\": cheaper, see doc/input.md, \"Presets\". Without the key, each key has its own default."),
   };
 }
 

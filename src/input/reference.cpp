@@ -15,10 +15,14 @@ std::string cell(std::string text) {
   return text;
 }
 
+/// A list whose default is that of each of its entries.
+bool many(const Key& key) { return key.count != Count::one && key.count != Count::any; }
+
 std::string default_cell(const Key& key) {
   if (!key.standard) return "**mandatory**";
+  if (key.standard->starts_with('[')) return fmt::format("`{}`", *key.standard);
   if (key.standard->starts_with('=')) return fmt::format("as `{}`", key.standard->substr(1));
-  return fmt::format("`{}`", describe(parse_value(std::string(*key.standard), "default")));
+  return fmt::format("{}`{}`", many(key) ? "each " : "", describe(parse_value(std::string(*key.standard), "default")));
 }
 
 std::string value_cell(const Key& key) {

@@ -66,8 +66,8 @@ std::string starter(int dimension) {
   Input in = parse(example(dimension), "example", {});
   std::string text =
       "# A scene of packmpi. Numbers are in SI units, or text with a unit: \"20 mm\". Keys that are commented out\n"
-      "# have the value shown, some of it by the preset that fidelity names. Check it with: packmpi check FILE; run\n"
-      "# it with: mpirun -n 4 packmpi FILE\n\n";
+      "# have the value shown as long as the file is as packmpi init wrote it: some follow from others (\"by\n"
+      "# fidelity\"). After a change, packmpi check FILE prints all of them. Run it with: mpirun -n 2 packmpi FILE\n\n";
   std::string_view open;
   for (const Key& key : keys()) {
     const std::string_view table = split_path(key.path).first;
