@@ -11,6 +11,12 @@ namespace packmpi::elementary {
 [[nodiscard]] double exponential(double x) noexcept;
 /// base^exponent for finite base > 0.
 [[nodiscard]] double power(double base, double exponent) noexcept;
+/// sin x for x in [0, pi].
+[[nodiscard]] double sine(double x) noexcept;
+/// arcsin x for x in [0, 1].
+[[nodiscard]] double arcsine(double x) noexcept;
+/// erfc x, the complementary error function, for finite x.
+[[nodiscard]] double complementary_error(double x) noexcept;
 /// x^(1/3) for finite x > 0.
 [[nodiscard]] double cube_root(double x) noexcept;
 /// x^(1/5) for finite x > 0.

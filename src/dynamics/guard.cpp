@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/elementary.hpp"
 #include "dynamics/kernel.hpp"
 #include "geometry/container.hpp"
 #include "input/time_step.hpp"
@@ -138,8 +139,9 @@ std::string advice(const Inspected& now, const Finding& found) {
                                   std::min(limit, 0.5 * now.stage.time_step), limit, known);
   const bool pressed = found.fault == Fault::overlap || found.fault == Fault::outside;
   if (!pressed || limit < now.stage.time_step) return words;
-  const double overlap = found.fault == Fault::overlap ? std::max(found.size, 1.0) : 1.0;     // still growing
-  const double stiffer = now.stage.youngs_modulus * std::pow(overlap / modest_overlap, 2.5);  // an impact's exponent
+  const double overlap = found.fault == Fault::overlap ? std::max(found.size, 1.0) : 1.0;  // still growing
+  const double stiffer =
+      now.stage.youngs_modulus * elementary::power(overlap / modest_overlap, 2.5);  // an impact's exponent
   return words + fmt::format(", or {} = {:.1e} Pa or more",
                              in.layers.youngs_modulus ? "layers.youngs_modulus" : "particles.youngs_modulus", stiffer);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "dynamics/kernel.hpp"
 #include "geometry/container.hpp"
 
@@ -23,7 +24,7 @@ double whole_power(double x, std::int64_t n) {
 double inverse_power(double d, double exponent) {
   constexpr double most = 512.0;  // beyond, the value is 0 or infinite for any length in metres
   const double halves = 2.0 * std::fabs(exponent);
-  if (halves != std::floor(halves) || halves > most) return std::pow(d, -exponent);
+  if (halves != std::floor(halves) || halves > most) return elementary::power(d, -exponent);
   const auto count = static_cast<std::int64_t>(halves);
   double power = whole_power(d, count / 2);
   if (count % 2 == 1) power *= std::sqrt(d);

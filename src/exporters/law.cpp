@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.hpp"
+
 namespace packmpi::exporters {
 namespace {
 
@@ -27,7 +29,7 @@ double tsuji_restitution(double damping_ratio) {
 
 double restitution(double damping_ratio) {
   const double beta = std::sqrt(1.2) * damping_ratio;
-  return beta < 1.0 ? std::exp(-std::numbers::pi * beta / std::sqrt(1.0 - beta * beta)) : 0.0;
+  return beta < 1.0 ? elementary::exponential(-std::numbers::pi * beta / std::sqrt(1.0 - beta * beta)) : 0.0;
 }
 
 double shear_modulus(const Specimen& specimen) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.hpp"
+
 namespace packmpi::geometry {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double pi = std::numbers::pi;
 
 /// phi - sin(phi), phi in [0, pi], without the cancellation that leaves nothing of it at small phi.
 double arc_minus_sine(double phi) {
-  if (phi > 1.0) return phi - std::sin(phi);
+  if (phi > 1.0) return phi - elementary::sine(phi);
   const double square = phi * phi;
   double rest = 1.0;  // Horner from the 10th term of phi^3/3! (1 - phi^2/(4 5) (1 - phi^2/(6 7) (...)))
   for (int k = 10; k >= 2; --k) rest = 1.0 - square / (2.0 * k * (2.0 * k + 1.0)) * rest;
@@ -20,7 +22,7 @@ double arc_minus_sine(double phi) {
 
 /// Area of the disc's segment of height h <= r; the arc's angle through its half sine, exact near tangency.
 double segment(double r, double h) {
-  const double phi = 4.0 * std::asin(std::sqrt(h / (2.0 * r)));
+  const double phi = 4.0 * elementary::arcsine(std::sqrt(h / (2.0 * r)));
   return 0.5 * r * r * arc_minus_sine(phi);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/elementary.hpp"
 #include "input/grading.hpp"
 #include "input/radius_range.hpp"
 #include "input/rhythm.hpp"
@@ -58,11 +59,12 @@ struct Case {
 
 /// The share of a Gaussian, lognormal or Weibull distribution that falls into [min, max].
 double kept_share(const Radius& radius) {
-  const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); };
+  const auto normal = [](double x) { return 0.5 * elementary::complementary_error(-x / std::numbers::sqrt2); };
   const auto below = [&](double r) {
     if (radius.distribution == SizeDistribution::gaussian) return normal((r - radius.mean) / radius.sd);
-    if (radius.distribution == SizeDistribution::lognormal) return normal(std::log(r / radius.median) / radius.log_sd);
-    return -std::expm1(-std::pow(r / radius.scale, radius.shape));
+    if (radius.distribution == SizeDistribution::lognormal)
+      return normal(elementary::logarithm(r / radius.median) / radius.log_sd);
+    return 1.0 - elementary::exponential(-elementary::power(r / radius.scale, radius.shape));
   };
   return below(radius.max) - below(radius.min);
 }

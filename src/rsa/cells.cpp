@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
+
 namespace packmpi::rsa {
 namespace {
 
@@ -11,7 +13,7 @@ double cell_width(const scene::Scene& scene, const LayerRegion& region, std::int
   const double floor = scene.box.floor_area() / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
   const double share = floor * region.thickness;
   const bool deep = scene.box.dimension == 3;
-  double width = deep ? std::cbrt(share) : std::sqrt(share);
+  double width = deep ? elementary::cube_root(share) : std::sqrt(share);
   if (width > region.thickness) width = deep ? std::sqrt(floor) : floor;  // one cell high
   return std::max(diameter, width);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "input/time_step.hpp"
 
@@ -24,8 +25,8 @@ double largest_near_force(const Scene& scene) {
   if (!scene.in.near_field) return 0.0;
   const input::NearField& near = *scene.in.near_field;
   const double d = scene.sizes.smallest();
-  const double force =
-      std::abs(near.alpha1) * std::pow(d, -near.beta1) + std::abs(near.alpha2) * std::pow(d, -near.beta2);
+  const double force = std::abs(near.alpha1) * elementary::power(d, -near.beta1) +
+                       std::abs(near.alpha2) * elementary::power(d, -near.beta2);
   if (std::isfinite(force)) return force;
   throw Error(ExitCode::bad_input,
               fmt::format("{}: near_field: the force at a distance of {:g} m is beyond the range of numbers; lower the "
@@ -48,7 +49,8 @@ double largest_force(const Scene& scene) {
   const double m = input::mass(in.particles, r);
   const double drop = scene.box.height() + 2.0 * in.layers.thickness;
   const double speed = input::impact_speed(in, drop);
-  const double overlap = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4);
+  const double square = 5.0 * m * speed * speed / (4.0 * k);
+  const double overlap = square > 0.0 ? elementary::power(square, 0.4) : 0.0;
   const double column = m * in.jamming.gravity * drop / r;
   const double elastic = k * r * std::sqrt(r);
   const double impact = k * overlap * std::sqrt(overlap);
@@ -72,7 +74,7 @@ double near_speed(const Scene& scene) {
   if (!scene.in.near_field) return 0.0;
   const double r = scene.sizes.smallest();
   const double cutoff = scene.in.near_field->cutoff;
-  const double neighbors = std::pow(cutoff / r, scene.box.dimension);
+  const double neighbors = elementary::power(cutoff / r, scene.box.dimension);
   return std::sqrt(2.0 * largest_near_force(scene) * cutoff * neighbors / input::mass(scene.in.particles, r));
 }
 

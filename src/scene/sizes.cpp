@@ -70,9 +70,10 @@ double Sizes::mean() const noexcept {
   if (!(radius_.sd > 0.0)) return std::clamp(radius_.mean, radius_.min, radius_.max);
   const double low = (radius_.min - radius_.mean) / radius_.sd;
   const double high = (radius_.max - radius_.mean) / radius_.sd;
-  const double density =
-      (std::exp(-0.5 * low * low) - std::exp(-0.5 * high * high)) / std::sqrt(2.0 * std::numbers::pi);
-  const double inside = 0.5 * (std::erfc(-high / std::numbers::sqrt2) - std::erfc(-low / std::numbers::sqrt2));
+  const double density = (elementary::exponential(-0.5 * low * low) - elementary::exponential(-0.5 * high * high)) /
+                         std::sqrt(2.0 * std::numbers::pi);
+  const double inside = 0.5 * (elementary::complementary_error(-high / std::numbers::sqrt2) -
+                               elementary::complementary_error(-low / std::numbers::sqrt2));
   return radius_.mean + radius_.sd * density / inside;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace packmpi::elementary {
 namespace {
@@ -25,6 +26,35 @@ TEST(Elementary, AgreesWithTheLibraryToAFewLastBits) {
   EXPECT_LT(worst_root, 1e-15);
   EXPECT_LT(worst_exp, 1e-15);
   EXPECT_LT(worst_fifth, 2e-15);  // five times the root's
+}
+
+// Against long doubles, so that the library's own last bits do not count.
+TEST(Elementary, CirclesAndTheErrorFunctionToAFewLastBits) {
+  double worst_sine = 0.0, worst_arcsine = 0.0, worst_error = 0.0;
+  for (int k = 1; k < 20000; ++k) {
+    const double x = std::numbers::pi * k / 20000.0;
+    worst_sine = std::max(worst_sine, off(sine(x), static_cast<double>(std::sin(static_cast<long double>(x)))));
+    const double y = k / 20000.0;
+    worst_arcsine =
+        std::max(worst_arcsine, off(arcsine(y), static_cast<double>(std::asin(static_cast<long double>(y)))));
+    const double z = (k - 10000) / 1500.0;  // -6.67 .. 6.67; e^(-z^2) amplifies the rounding of z^2
+    const auto exact = static_cast<double>(std::erfc(static_cast<long double>(z)));
+    worst_error = std::max(worst_error, off(complementary_error(z), exact) / (1.0 + z * z));
+  }
+  EXPECT_LT(worst_sine, 5e-16);
+  EXPECT_LT(worst_arcsine, 1e-15);
+  EXPECT_LT(worst_error, 3e-15);
+  for (const double tiny : {1e-300, 1e-20, 1e-9}) {
+    EXPECT_EQ(sine(tiny), tiny);
+    EXPECT_DOUBLE_EQ(arcsine(tiny), tiny);
+  }
+  EXPECT_NEAR(sine(std::numbers::pi), 1.2246467991473532e-16, 1e-30);
+  EXPECT_EQ(sine(0.0), 0.0);
+  EXPECT_EQ(arcsine(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(arcsine(1.0), 0.5 * std::numbers::pi);
+  EXPECT_EQ(complementary_error(0.0), 1.0);
+  EXPECT_EQ(complementary_error(40.0), 0.0);
+  EXPECT_EQ(complementary_error(-40.0), 2.0);
 }
 
 TEST(Elementary, ExactValues) {
