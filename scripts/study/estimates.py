@@ -7,12 +7,12 @@ Runs build/packmpi, one rank, one pack after the other, in results/estimates: fr
 distributions, in 2D and 3D. Three to ten minutes of one core.
 """
 import argparse
-import datetime
 import json
 import re
 import subprocess
 from pathlib import Path
 
+import measuring
 from common import ENVIRONMENT, ROOT, fail
 
 PROGRAM = ROOT / "build" / "packmpi"
@@ -92,16 +92,13 @@ def main():
     wanted = options.parse_args().cases
     FOLDER.mkdir(parents=True, exist_ok=True)
     rows = [row(*case) for case in cases() if any(word in case[0] for word in wanted)]
-    head = (f"Made by `scripts/study/estimates.py` on {datetime.date.today()}; one pack a line, seed 1.\n\n"
-            "| scene | fraction, estimated | got | particles, estimated | got | pack, bytes, estimated | got | "
-            "time, s, estimated | got |\n|---|---|---|---|---|---|---|---|---|\n")
+    head = (f"{measuring.made_by('scripts/study/estimates.py')}; one pack a line, seed 1.\n\n"
+            "| scene | fraction, estimated | achieved | particles, estimated | achieved | pack, bytes, estimated | achieved | "
+            "time, s, estimated | achieved |\n|---|---|---|---|---|---|---|---|---|\n")
     if wanted != [""]:
         print("\n".join(rows))
         return
-    page = PAGE.read_text()
-    begin, end = "<!-- estimates: begin -->\n", "<!-- estimates: end -->"
-    before, rest = page.split(begin)
-    PAGE.write_text(before + begin + head + "\n".join(rows) + "\n" + end + rest.split(end)[1])
+    measuring.write_block(PAGE, "estimates", head + "\n".join(rows))
 
 
 if __name__ == "__main__":

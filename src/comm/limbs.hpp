@@ -1,4 +1,4 @@
-/// Wide integers in pieces that MPI can add. Private to this room; local.
+/// Wide integers in pieces that MPI can add. Private to this module; local.
 #pragma once
 #include <array>
 #include <cstddef>

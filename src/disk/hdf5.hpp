@@ -1,4 +1,4 @@
-/// HDF5 behind owned handles, every call checked. Private to this room. All of it is rank-local.
+/// HDF5 behind owned handles, every call checked. Private to this module. All of it is rank-local.
 #pragma once
 #include <hdf5.h>
 

@@ -1,4 +1,4 @@
-/// Rows to the rank that writes them: each rank owns one contiguous block of ids. Private to this room.
+/// Rows to the rank that writes them: each rank owns one contiguous block of ids. Private to this module.
 #pragma once
 #include <algorithm>
 #include <cstdint>

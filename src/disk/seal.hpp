@@ -1,5 +1,5 @@
 /// What stands behind the end of every HDF5 file of ours: digests of all its bytes, so that nothing damaged is given to
-/// HDF5, which trusts what a file says of itself. Private to this room.
+/// HDF5, which trusts what a file says of itself. Private to this module.
 #pragma once
 #include <cstddef>
 #include <cstdint>

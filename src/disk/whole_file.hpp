@@ -1,4 +1,4 @@
-/// An HDF5 file that all ranks write and that appears whole or not at all. Private to this room.
+/// An HDF5 file that all ranks write and that appears whole or not at all. Private to this module.
 #pragma once
 #include <functional>
 #include <string>

@@ -1,5 +1,5 @@
 /// What a file of another code consists of. One writer a format makes one from a specimen; the file itself is written
-/// by output/rows_file. Private to this room.
+/// by output/rows_file. Private to this module.
 #pragma once
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-/// The formats there are: the one table for the command line, the documentation and the writing. Private to this room.
+/// The formats there are: the one table for the command line, the documentation and the writing. Private to this
+/// module.
 #pragma once
 #include <span>
 

@@ -1,4 +1,4 @@
-/// What LAMMPS and LIGGGHTS have in common. Private to this room.
+/// What LAMMPS and LIGGGHTS have in common. Private to this module.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-/// The scene's contact law in the words of the codes that read its packs. Private to this room.
+/// The scene's contact law in the words of the codes that read its packs. Private to this module.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-/// A file of many rows that all ranks write, each its own bytes. Private to this room.
+/// A file of many rows that all ranks write, each its own bytes. Private to this module.
 #pragma once
 #include <string>
 

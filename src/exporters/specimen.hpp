@@ -1,4 +1,4 @@
-/// The particles of a pack as another code gets them: trimmed, copied, numbered. Private to this room.
+/// The particles of a pack as another code gets them: trimmed, copied, numbered. Private to this module.
 #pragma once
 #include <array>
 #include <cstdint>

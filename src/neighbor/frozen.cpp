@@ -8,7 +8,7 @@
 namespace packmpi::neighbor {
 namespace {
 
-// Where a particle belongs in the order of this room.
+// Where a particle belongs in the order of this module.
 struct Place {
   int column;
   double height;
@@ -75,7 +75,7 @@ void Frozen::sort(const scene::Ownership& ownership, const LocalColumns& columns
 }
 
 std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, const LocalColumns& columns,
-                                        double range) const {
+                                         double range) const {
   std::vector<comm::Parcel> parcels;
   const std::size_t record = store_.layout().record_bytes();
   for (const LocalColumns::Border& border : columns.borders()) {  // ascending in rank
@@ -97,7 +97,7 @@ std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, cons
 }
 
 void Frozen::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ownership& ownership,
-                       const LocalColumns& columns) {
+                        const LocalColumns& columns) {
   particles::Store arrived(store_.layout());
   std::vector<double> body(static_cast<std::size_t>(store_.layout().stride));
   for (const comm::Parcel& parcel : parcels) {

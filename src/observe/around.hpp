@@ -1,4 +1,4 @@
-/// The neighbours of each particle, in an order that no rank changes. Private to this room.
+/// The neighbours of each particle, in an order that no rank changes. Private to this module.
 #pragma once
 #include <span>
 #include <vector>

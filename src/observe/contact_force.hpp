@@ -1,4 +1,4 @@
-/// The force of one contact, with the formulas of the kernel written plainly (CC16 eqs. 7-15). Private to this room.
+/// The force of one contact, with the formulas of the kernel written plainly (CC16 eqs. 7-15). Private to this module.
 #pragma once
 #include "dynamics/law.hpp"
 #include "observe/touch.hpp"

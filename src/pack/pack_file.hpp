@@ -1,4 +1,4 @@
-/// A pack file, open for reading in slices. Private to this room.
+/// A pack file, open for reading in slices. Private to this module.
 #pragma once
 #include <cstdint>
 #include <string>

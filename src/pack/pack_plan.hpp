@@ -1,4 +1,4 @@
-/// What goes into a pack file: the datasets, from rows that are already where they belong. Private to this room.
+/// What goes into a pack file: the datasets, from rows that are already where they belong. Private to this module.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-/// A run's state as text and back, exactly. Private to this room.
+/// A run's state as text and back, exactly. Private to this module.
 #pragma once
 #include <cstdint>
 #include <string>

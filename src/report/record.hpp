@@ -49,7 +49,7 @@ struct RankNumbers {
 
 /// Everything about a run but its particles. Quantities marked (*) are the same on any number of ranks.
 struct RunRecord {
-  // asked
+  // targets
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
@@ -57,7 +57,7 @@ struct RunRecord {
   double target_height = 0.0;    ///< [m] H_d
   double target_fraction = 0.0;  ///< phi_0 of each insertion
   double target_mean_radius = 0.0, target_sd_radius = 0.0, target_min_radius = 0.0, target_max_radius = 0.0;  ///< [m]
-  // got (*)
+  // achieved (*)
   std::int64_t particles = 0;
   double height = 0.0, top = 0.0;  ///< [m]
   double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
@@ -70,7 +70,7 @@ struct RunRecord {
   double floor_force = 0.0;        ///< [N]
   double weight = 0.0;             ///< [N] m g of all particles
   double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
-  observe::SizeMatches sizes;                                                     ///< with what was asked
+  observe::SizeMatches sizes;                                                     ///< with their targets
   double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
   double duration = 0.0;  ///< [s] simulated

@@ -19,9 +19,9 @@ Json to_json(const observe::SizeMatch& match) {
 }
 
 void add_lines(const char* weighting, const observe::SizeMatch& match, std::vector<SizeLine>& lines) {
-  const auto line = [&](const char* what, double asked, double got) {
+  const auto line = [&](const char* what, double target, double achieved) {
     lines.push_back(
-        {fmt::format(fmt::runtime(what), weighting), fmt::format("{:.5g}", asked), fmt::format("{:.5g}", got)});
+        {fmt::format(fmt::runtime(what), weighting), fmt::format("{:.5g}", target), fmt::format("{:.5g}", achieved)});
   };
   line("D10 by {} [m]", match.target.d10, match.achieved.d10);
   line("D30 by {} [m]", match.target.d30, match.achieved.d30);

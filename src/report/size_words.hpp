@@ -1,4 +1,4 @@
-/// The sizes target and achieved, as JSON and as lines of a table. Private to this room.
+/// Target and achieved sizes, as JSON and as lines of a table. Private to this module.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -14,11 +14,11 @@ using Buffer = fmt::memory_buffer;
 std::string number(double value) { return fmt::format("{:.5g}", value); }
 std::string number(std::int64_t value) { return fmt::format("{}", value); }
 
-void line(Buffer& out, std::string_view quantity, std::string_view asked, std::string_view got) {
-  fmt::format_to(std::back_inserter(out), "  {:<44} {:>22} {:>22}\n", quantity, asked, got);
+void line(Buffer& out, std::string_view quantity, std::string_view target, std::string_view achieved) {
+  fmt::format_to(std::back_inserter(out), "  {:<44} {:>22} {:>22}\n", quantity, target, achieved);
 }
 
-/// Only what was asked for is shown in the middle column.
+/// The middle column has targets only.
 void compare(Buffer& out, const RunRecord& r) {
   fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
   line(out, "quantity", "target", "achieved");
@@ -35,12 +35,12 @@ void compare(Buffer& out, const RunRecord& r) {
   if (r.target_min_radius < r.target_max_radius) {
     for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.target, size.achieved);
   }
-  line(out, "touching particles, mean", "", number(r.coordination));
+  line(out, "coordination number", "", number(r.coordination));
   line(out, "rattlers, share", "", number(r.rattlers));
   line(out, "overlap / smaller radius, mean", "", number(r.mean_overlap));
   line(out, "overlap / smaller radius, worst", "", number(r.audit.worst_overlap));
   line(out, "wall penetration / radius, worst", "", number(r.audit.worst_wall_penetration));
-  line(out, "force on the floor [N] (asked: the weight)", number(r.weight), number(r.floor_force));
+  line(out, "force on the floor [N] (target: the weight)", number(r.weight), number(r.floor_force));
   line(out, "kinetic energy [J]", "", number(r.kinetic_energy));
   line(out, "particles lost", "0", number(r.audit.expected - r.audit.found));
   line(out, "particles not finite", "0", number(r.audit.non_finite));

@@ -58,7 +58,7 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
                   "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
                   "layers.thickness{}",
                   region.layer + 1, got.inserted, got.target, share, scene.in.layers.fraction, got.trials, attempts,
-                  limit, where, early ? ", as too few of the last ones found room" : "",
+                  limit, where, early ? ", as too few of the last trials were accepted" : "",
                   early ? "" : " or layers.attempts"));
 }
 

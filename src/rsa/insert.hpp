@@ -58,7 +58,7 @@ inline constexpr int size_classes = 8;
 [[nodiscard]] Vec3 trial(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
                          std::uint32_t attempt);
 
-/// True if two spheres overlap, by the one formula used everywhere in this room (shortest image on periodic axes).
+/// True if two spheres overlap, by the one formula used everywhere in this module (shortest image on periodic axes).
 [[nodiscard]] bool overlap(const geometry::Container& box, const Vec3& a, double ra, const Vec3& b, double rb);
 
 }  // namespace packmpi::rsa

@@ -1,4 +1,4 @@
-/// Spheres as this room passes them around, and the one test for their overlap.
+/// Spheres as this module passes them around, and the one test for their overlap.
 #pragma once
 #include <array>
 #include <compare>

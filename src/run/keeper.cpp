@@ -176,8 +176,8 @@ void Keeper::keep_going_without(const std::string& words) {
 
 void Keeper::stop(Reason reason) {
   if (!kept_ || last_step_ != bed_.steps) write();
-  constexpr std::array<const char*, 5> words{"", "a signal asked for it", "the STOP file is there",
-                                             "the time limit is near", "--max-steps are done"};
+  constexpr std::array<const char*, 5> words{"", "a signal said so", "the STOP file is there", "the time limit is near",
+                                             "--max-steps are done"};
   throw Error(
       ExitCode::stopped_early,
       fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", bed_.steps,

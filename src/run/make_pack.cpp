@@ -163,17 +163,18 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
 // How near the sizes are to those asked; one line of the log.
 void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
   if (scene.sizes.equal()) return;
-  log::event("sizes",
-             fmt::format("sizes: D50 by mass {:.4g} m, asked {:.4g}; Cu {:.3g}, asked {:.3g}; the curves differ by at "
-                         "most {:.2g} by number, {:.2g} by mass",
-                         sizes.by_mass.achieved.d50, sizes.by_mass.target.d50, sizes.by_mass.achieved.uniformity(),
-                         sizes.by_mass.target.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
-             {{"d50_by_mass", sizes.by_mass.achieved.d50},
-              {"target_d50_by_mass", sizes.by_mass.target.d50},
-              {"cu_by_mass", sizes.by_mass.achieved.uniformity()},
-              {"target_cu_by_mass", sizes.by_mass.target.uniformity()},
-              {"distance_by_number", sizes.by_number.distance},
-              {"distance_by_mass", sizes.by_mass.distance}});
+  log::event(
+      "sizes",
+      fmt::format("sizes: D50 by mass {:.4g} m, target {:.4g}; Cu {:.3g}, target {:.3g}; the curves differ by at "
+                  "most {:.2g} by number, {:.2g} by mass",
+                  sizes.by_mass.achieved.d50, sizes.by_mass.target.d50, sizes.by_mass.achieved.uniformity(),
+                  sizes.by_mass.target.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
+      {{"d50_by_mass", sizes.by_mass.achieved.d50},
+       {"target_d50_by_mass", sizes.by_mass.target.d50},
+       {"cu_by_mass", sizes.by_mass.achieved.uniformity()},
+       {"target_cu_by_mass", sizes.by_mass.target.uniformity()},
+       {"distance_by_number", sizes.by_number.distance},
+       {"distance_by_mass", sizes.by_mass.distance}});
 }
 
 // The pack in its file; the particles are let go.

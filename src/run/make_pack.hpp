@@ -1,4 +1,4 @@
-/// CC16 Algorithm 1: layer after layer until the asked height is reached.
+/// CC16 Algorithm 1: layer after layer until the target height is reached.
 #pragma once
 #include "comm/comm.hpp"
 #include "report/record.hpp"
@@ -14,7 +14,7 @@ namespace packmpi::run {
 /// written. A pack that misses a target is written all the same: see RunRecord::reached and the audit.
 [[nodiscard]] report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
 
-/// Whether the record is what was asked: height reached, nothing lost, nothing outside, no deep overlap.
+/// Whether the targets are met: height reached, nothing lost, nothing outside, no deep overlap.
 [[nodiscard]] bool targets_met(const report::RunRecord& record);
 
 }  // namespace packmpi::run

@@ -1,4 +1,4 @@
-/// A made-up run and its folder, for the tests of this room.
+/// A made-up run and its folder, for the tests of this module.
 #pragma once
 #include <cstdlib>
 #include <filesystem>

@@ -80,7 +80,7 @@ inline neighbor::WallList all_walls(const particles::Store& store, const geometr
   return walls;
 }
 
-/// A scene of equal particles, without the input room.
+/// A scene of equal particles, without the input module.
 inline scene::Scene make_scene(int dimension, const Vec3& size, std::array<bool, 2> periodic, double largest_radius) {
   scene::Scene scene;
   scene.in.particles.density = 1000.0;

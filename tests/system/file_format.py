@@ -109,7 +109,7 @@ def check_json(path, table, page):
                f"{path.name}: {part} are {sorted(summary[part])}")
         expect(all(len(numbers["of_rank"]) == summary["provenance"]["ranks"] and sum(numbers["of_rank"]) == numbers["sum"]
                    and max(numbers["of_rank"]) == numbers["max"] for numbers in summary[part].values()), f"{path.name}: {part}")
-    expect(set(summary["target"]) | set(summary["achieved"]) == names["summary"] - {"units"}, f"{path.name}: asked, got")
+    expect(set(summary["target"]) | set(summary["achieved"]) == names["summary"] - {"units"}, f"{path.name}: target, achieved")
     for weighting in ("number", "mass"):
         sizes = summary["sizes"][weighting]
         points = {f"d{percent}" for percent in (10, 30, 50, 60, 90)} | {"cu", "cc"}

@@ -169,12 +169,12 @@ def main():
     check("USR1: the run goes on after its checkpoint", process.poll() is None)
     end("USR1", process, folder, 0, "", whole)
 
-    asked = "a signal asked for it"
-    told("USR2", to_mpirun(signal.SIGUSR2), 75, asked, whole)
+    signalled = "a signal said so"
+    told("USR2", to_mpirun(signal.SIGUSR2), 75, signalled, whole)
     # mpirun waits all of its patience after TERM, too, and ends with a code of its own
     told("TERM", term_to_mpirun, None, "", whole, mca=("--mca", "odls_base_sigkill_timeout", "3"))
-    told("TERM to one rank", to_one_rank(signal.SIGTERM), 75, asked, whole)
-    told("INT to one rank", to_one_rank(signal.SIGINT), 75, asked, whole)
+    told("TERM to one rank", to_one_rank(signal.SIGTERM), 75, signalled, whole)
+    told("INT to one rank", to_one_rank(signal.SIGINT), 75, signalled, whole)
     told("STOP", stop_file, 75, "the STOP file is there", whole)
 
     process = start(folder := scratch / "twice")
