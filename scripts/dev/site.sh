@@ -10,6 +10,9 @@ for page in "$root"/doc/*.md; do
 done
 built=$(realpath -m "${1:-$root/build/site}")
 mkdocs build --strict --quiet --clean -f "$root/scripts/dev/site.yml" -d "$built"
+# The theme's index again, for pages from the disk (scripts/dev/site/main.html): a script may be read there, JSON may not.
+python3 -c 'import json, sys; json.dump(json.load(open(sys.argv[1]))["docs"], sys.stdout)' "$built/search/search_index.json" |
+  { printf 'window.indexOfDisk = '; cat; } >"$built/search/index_of_disk.js"
 # "r* = r_i, m* = m_i" must stand between backticks: Markdown would take the asterisks away.
 if grep -noE '[[:alnum:]]<em>|<em> |<em>[^<]*[=^][^<]*</em>' "$built"/*.html; then
   echo "site: asterisks of a formula were taken for emphasis; put it between backticks" >&2
