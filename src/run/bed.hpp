@@ -28,7 +28,7 @@ struct Bed {
   /// [J] kinetic and potential, as the moving particles were given it: at insertion, less what the frozen took away
   double energy_given = 0.0;
   std::int64_t steps = 0;
-  std::int64_t relaxation_steps = 0;              ///< of them, in final relaxations
+  std::int64_t relaxation_steps = 0;        ///< of them, in final relaxations
   std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
   double stepping = 0.0, inserting = 0.0;   ///< [s] wall time of this rank, since the start or restart
 

@@ -209,10 +209,10 @@ TEST(GiveUp, AfterTheAttemptsAllowed) {
   const double volume = static_cast<double>(serial.placed.size()) * 4.0 / 3.0 * 3.14159265358979 * 0.04 * 0.04 * 0.04;
   for (const Decomposition kind : {Decomposition::slab, Decomposition::metis}) {
     EXPECT_THAT(complaint(scene, region, kind),
-                testing::StartsWith(fmt::format(
-                    "layer 3: random sequential addition placed {} of {} particles: solid fraction "
-                    "{:.4f} of 0.3000, after {} trials; it ended in 12 of 12 attempts a particle. Lower",
-                    serial.placed.size(), serial.target, volume / (0.8 * 0.4), serial.trials)));
+                testing::StartsWith(
+                    fmt::format("layer 3: random sequential addition placed {} of {} particles: solid fraction "
+                                "{:.4f} of 0.3000, after {} trials; it ended in 12 of 12 attempts a particle. Lower",
+                                serial.placed.size(), serial.target, volume / (0.8 * 0.4), serial.trials)));
   }
 }
 

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "input/read.hpp"
-#include "report/ensemble.hpp"
 #include "pack/pack.hpp"
+#include "report/ensemble.hpp"
 #include "run/make_pack.hpp"
 
 namespace packmpi::run {
