@@ -106,7 +106,7 @@ def density_table(cells):
 
 
 def state_table(cells):
-    heads = ["example", "rotation", "particles", "layers", "height [m]", "contacts a particle", "mean overlap / r",
+    heads = ["example", "rotation", "particles", "layers", "height [m]", "coordination number", "mean overlap / r",
              "compaction rate [1/s]", "rattlers", "wall time [s]"]
     rows = []
     for cell in cells:
@@ -153,7 +153,7 @@ def protocol(rows):
     steps = ", ".join(f"{step:g}" for step in sorted({float(row["time_step"]) for row in rows}))
     versions = ", ".join(sorted({f"{row['version']} ({row['git']})" for row in rows}))
     return f"""Made by packmpi {versions}; time step {steps} s. The scenes are `input/paper_5_1.toml` to
-`paper_5_4.toml`. phi is the solid fraction below the target height H_d, phi_bulk the same between 0.2 H_d and 0.8 H_d,
+`paper_5_4.toml`. phi is the solid fraction below the target height H_d, phi_bulk the same between 0.2 H_d and 0.8 H_d.
 The compaction rate is d phi_bulk / dt over the last tenth of the last layer. Values are mean ± standard deviation of a pack over the
 seeds. Every run is a line of [data/reproduction.csv](data/reproduction.csv).""".splitlines()
 
