@@ -209,7 +209,8 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
     const double touching = scene.box.dimension == 3 ? 5.2 : 4.5;  // of a particle
     contacts = std::llround(0.5 * touching * static_cast<double>(e.particles.value));
   }
-  e.pack_bytes = pack::pack_bytes(record, scene.in.dynamics.rotation, e.particles.value, contacts);
+  e.pack_bytes =
+      pack::pack_bytes(record, scene.in.dynamics.rotation, e.particles.value, contacts, observe::map_columns(scene));
   pack::RunState state;
   state.effective_input = scene.in.effective;
   state.version = record.version;

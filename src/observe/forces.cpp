@@ -6,11 +6,23 @@
 #include "observe/measure.hpp"
 
 namespace packmpi::observe {
-std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,
-                                         const neighbor::PairList& pairs) {
+namespace {
+
+Vec3 middle(const geometry::Container& box, const Vec3& from, const Vec3& branch) {
+  Vec3 x{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    x[a] = from[a] + 0.5 * branch[a];
+    if (a < static_cast<std::size_t>(box.lateral_axes()) && box.periodic[a]) x[a] = geometry::wrap(x[a], box.size[a]);
+  }
+  return x;
+}
+
+}  // namespace
+
+void each_contact(const particles::Store& store, const scene::Scene& scene, const neighbor::PairList& pairs,
+                  const std::function<void(const ContactForce&)>& take) {
   const dynamics::Law law = dynamics::make_law(scene);
   const auto ids = store.ids();
-  std::vector<ContactForce> rows;
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     LocalIndex i = pairs.first[p];
     LocalIndex j = pairs.second[p];
@@ -20,10 +32,15 @@ std::vector<ContactForce> contact_forces(const particles::Store& store, const sc
     if (!(at.overlap > 0.0)) continue;
     const Vec3 xi = store.position(i);
     const Vec3 branch = geometry::separation(scene.box, xi, store.position(j));
-    const auto vertical = static_cast<std::size_t>(scene.box.vertical());
-    rows.push_back({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap,
-                    pair_force(store, law, i, j, at), branch, xi[vertical] + 0.5 * branch[vertical]});
+    take({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap,
+          pair_force(store, law, i, j, at), branch, middle(scene.box, xi, branch)});
   }
+}
+
+std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,
+                                         const neighbor::PairList& pairs) {
+  std::vector<ContactForce> rows;
+  each_contact(store, scene, pairs, [&](const ContactForce& contact) { rows.push_back(contact); });
   std::sort(rows.begin(), rows.end(), [](const ContactForce& a, const ContactForce& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });

@@ -1,6 +1,7 @@
 /// Measures of a pack: read only, the same on any number of ranks.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -103,8 +104,12 @@ struct ContactForce {
   double overlap;          ///< [m]
   Vec3 force;              ///< [N] on the first: normal and friction, without near field
   Vec3 branch{};           ///< [m] from the centre of the first to that of the second
-  double height = 0.0;     ///< [m] of the point half-way
+  Vec3 middle{};           ///< [m] the point half-way, inside periodic axes
 };
+/// Calls take(contact) for each touching pair whose smaller id is owned here, in the order of the list. Local; cost
+/// O(pairs).
+void each_contact(const particles::Store& store, const scene::Scene& scene, const neighbor::PairList& pairs,
+                  const std::function<void(const ContactForce&)>& take);
 /// The touching pairs whose smaller id is owned here, sorted by (first, second). Local; cost O(pairs log pairs).
 /// Every pair of the scene is returned by exactly one rank, with the same bits on any number of them.
 [[nodiscard]] std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,

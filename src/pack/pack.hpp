@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "observe/column_maps.hpp"
 #include "observe/measure.hpp"
 #include "particles/store.hpp"
 #include "report/record.hpp"
@@ -25,6 +26,7 @@ struct PackParts {
   std::span<const std::int32_t> layer;      ///< of the owned, in slot order
   std::span<const std::int32_t> contacts;   ///< touching particles of the owned, in slot order
   const std::vector<ContactRow>* contact_rows = nullptr;  ///< none: no /contacts; on all ranks or on none
+  const observe::ColumnMaps* maps = nullptr;              ///< none: no /columns; on all ranks or on none
 };
 
 /// Collective. Writes PATH (NAME.hdf): to PATH.tmp, flushed, fsync'ed, renamed. Rows sorted by id whatever the ranks;
@@ -34,10 +36,10 @@ struct PackParts {
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
                 const report::RunRecord& record);
 
-/// Bytes of the file that write_pack() would write of so many particles and contacts (none: no /contacts). Rank-local.
-/// Throws Error(io_failure).
+/// Bytes of the file that write_pack() would write of so many particles, contacts (none: no /contacts) and columns of
+/// the maps (0: no /columns). Rank-local. Throws Error(io_failure).
 [[nodiscard]] std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,
-                                      std::optional<std::int64_t> contacts);
+                                      std::optional<std::int64_t> contacts, std::int64_t columns);
 
 /// Rows of a pack, sorted by id.
 struct PackRows {

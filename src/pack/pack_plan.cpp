@@ -83,6 +83,16 @@ void add_contacts(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
       disk::h5::make_column<double>("/contacts/force", "N", slab, rows, [](const Row& r) { return r.force; }));
 }
 
+void add_maps(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
+  const auto same = [](double value) { return value; };
+  const auto add = [&](const char* path, const char* unit, const std::vector<double>& values) {
+    plan.push_back(disk::h5::make_column<double>(path, unit, block.columns, values, same));
+  };
+  add("/columns/top", "m", block.maps->top);
+  add("/columns/solid_fraction", "-", block.maps->solid_fraction);
+  add("/columns/vertical_stress", "Pa", block.maps->vertical_stress);
+}
+
 /// VTKHDF 1.0, UnstructuredGrid: one cell, a poly-vertex of all particles, from the datasets that are there.
 void write_view(hid_t file, const PackBlock& block) {
   constexpr std::uint8_t poly_vertex = 2;
@@ -152,6 +162,8 @@ PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
               [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
     block.contacts = slab_of(comm, block.contact_rows.size());
   }
+  block.maps = parts.maps;
+  if (block.maps != nullptr) block.columns = slab_of(comm, block.maps->top.size());
   return block;
 }
 
@@ -159,6 +171,7 @@ std::vector<disk::h5::Column> plan_columns(const PackBlock& block) {
   std::vector<disk::h5::Column> plan;
   add_particles(block, plan);
   if (block.has_contacts) add_contacts(block, plan);
+  if (block.maps != nullptr) add_maps(block, plan);
   return plan;
 }
 
@@ -168,6 +181,14 @@ void write_frame(hid_t file, const PackBlock& block, const std::vector<disk::h5:
   disk::h5::set_attribute(file, "format_version", pack_version);
   (void)disk::h5::create_group(file, "/particles");
   if (block.has_contacts) (void)disk::h5::create_group(file, "/contacts");
+  if (block.maps != nullptr) {
+    const disk::h5::Handle columns = disk::h5::create_group(file, "/columns");
+    disk::h5::set_attribute(columns.get(), "counts",
+                            std::vector<std::int64_t>(block.maps->counts.begin(), block.maps->counts.end()));
+    disk::h5::set_attribute(columns.get(), "widths",
+                            std::vector<double>(block.maps->widths.begin(), block.maps->widths.end()));
+    disk::h5::set_attribute(columns.get(), "units", std::string("widths: m"));
+  }
   for (const disk::h5::Column& column : plan) disk::h5::create_dataset(file, column);
   write_summary(file, record);
   disk::h5::set_attributes(disk::h5::create_group(file, "/provenance").get(), report::provenance_fields(record));

@@ -24,7 +24,9 @@ struct PackBlock {
   std::vector<ParticleRow> rows;  // by id, without gap
   bool has_contacts = false;
   disk::h5::Slab contacts{};
-  std::vector<ContactRow> contact_rows;  // by (first, second)
+  std::vector<ContactRow> contact_rows;       // by (first, second)
+  const observe::ColumnMaps* maps = nullptr;  // not owned; none: no /columns
+  disk::h5::Slab columns{};
 };
 
 /// Collective. Brings every row to the rank that writes it, by id. Throws Error(numerical_failure) on every rank if the

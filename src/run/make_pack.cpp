@@ -151,10 +151,12 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
     }
   }
   const std::vector<std::int32_t> layers = bed.layers();
+  const observe::ColumnMaps maps = observe::column_maps(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs());
   const pack::PackParts parts{.store = &bed.store,
                               .layer = layers,
                               .contacts = contacts.of_particle,
-                              .contact_rows = bed.scene.in.output.contacts ? &rows : nullptr};
+                              .contact_rows = bed.scene.in.output.contacts ? &rows : nullptr,
+                              .maps = &maps};
   pack::write_pack(bed.comm, files.pack, parts, record);
   count(bed, contacts.pairs_here, record);
   disk::write_text(bed.comm, files.summary, report::to_json(record));

@@ -117,7 +117,8 @@ TEST_F(Estimates, APackIsWhatWasEstimated) {
   EXPECT_NEAR(record.height, e.height, 0.06 * e.height);
   const auto pack = static_cast<double>(fs::file_size(folder_ / "brick.hdf"));
   EXPECT_NEAR(static_cast<double>(e.pack_bytes), pack, 0.02 * pack);
-  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, std::nullopt), static_cast<std::int64_t>(pack));
+  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, std::nullopt, observe::map_columns(scene(proposed(e)))),
+            static_cast<std::int64_t>(pack));
 }
 
 TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
@@ -134,7 +135,7 @@ TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
   const report::RunRecord record = run::make_pack(comm_, scene(set), options());
   const std::int64_t contacts = std::llround(0.5 * record.coordination * static_cast<double>(record.particles));
   EXPECT_GT(contacts, 0);
-  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts),
+  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts, observe::map_columns(scene(set))),
             static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
 }
 

@@ -1,0 +1,59 @@
+#include "observe/column_field.hpp"
+
+#include <algorithm>
+
+namespace packmpi::observe {
+
+ColumnField::ColumnField(const comm::Comm& comm, const ColumnNumbering& columns)
+    : comm_(comm.handle()),
+      used_(static_cast<PetscInt>(columns.counts[0])),
+      padded_(std::max(used_, static_cast<PetscInt>(comm.size()))) {
+  check(DMDACreate2d(comm_, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_STAR, padded_,
+                     static_cast<PetscInt>(columns.counts[1]), static_cast<PetscInt>(comm.size()), 1, 1, 0, nullptr,
+                     nullptr, &grid_));
+  check(DMSetUp(grid_));
+  check(DMDACreateNaturalVector(grid_, &values_));  // numbered by column, whoever owns it
+  check(VecSet(values_, 0.0));
+}
+
+ColumnField::~ColumnField() {
+  check(VecDestroy(&values_));
+  check(DMDestroy(&grid_));
+}
+
+void ColumnField::send(std::span<const ColumnValue> values, InsertMode mode) {
+  std::vector<PetscInt> column;
+  std::vector<PetscScalar> numbers;
+  for (const ColumnValue& one : values) {
+    column.push_back(static_cast<PetscInt>(one.column % used_ + padded_ * (one.column / used_)));
+    numbers.push_back(one.value);
+  }
+  const auto count = static_cast<PetscInt>(values.size());
+  Vec mine = nullptr;
+  IS where = nullptr;
+  VecScatter scatter = nullptr;
+  check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, count, numbers.data(), &mine));
+  check(ISCreateGeneral(PETSC_COMM_SELF, count, column.data(), PETSC_USE_POINTER, &where));
+  check(VecScatterCreate(mine, nullptr, values_, where, &scatter));
+  check(VecScatterBegin(scatter, mine, values_, mode, SCATTER_FORWARD));
+  check(VecScatterEnd(scatter, mine, values_, mode, SCATTER_FORWARD));
+  check(VecScatterDestroy(&scatter));
+  check(ISDestroy(&where));
+  check(VecDestroy(&mine));
+}
+
+std::vector<double> ColumnField::local() const {
+  PetscInt first = 0;
+  PetscInt end = 0;
+  const PetscScalar* values = nullptr;
+  std::vector<double> here;
+  check(VecGetOwnershipRange(values_, &first, &end));
+  check(VecGetArrayRead(values_, &values));
+  for (PetscInt k = first; k < end; ++k) {
+    if (k % padded_ < used_) here.push_back(values[k - first]);
+  }
+  check(VecRestoreArrayRead(values_, &values));
+  return here;
+}
+
+}  // namespace packmpi::observe

@@ -1,0 +1,67 @@
+/// A number for each lateral column of a grid, spread over the ranks: a PETSc DMDA and its vector. Private to this
+/// module.
+#pragma once
+#include <petscdmda.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "comm/comm.hpp"
+
+namespace packmpi::observe {
+
+/// Columns of equal size over the floor, numbered x fastest. In 2D there is one along y.
+struct ColumnNumbering {
+  std::array<std::int64_t, 2> counts{1, 1};
+  std::array<double, 2> lengths{};  ///< [m] of the floor
+
+  [[nodiscard]] std::int64_t size() const { return counts[0] * counts[1]; }
+  /// Of a position [m]; one outside belongs to the column at the border.
+  [[nodiscard]] std::int64_t column(const Vec3& position) const {
+    const auto coordinate = [&](std::size_t axis) {
+      const auto n = static_cast<double>(counts[axis]);
+      const double t = position[axis] / lengths[axis] * n;
+      if (!(t > 0.0)) return std::int64_t{0};
+      return t < n ? static_cast<std::int64_t>(t) : counts[axis] - 1;
+    };
+    return coordinate(0) + counts[0] * (counts[1] > 1 ? coordinate(1) : 0);
+  }
+};
+
+/// A value and the column it belongs to.
+struct ColumnValue {
+  std::int64_t column;
+  double value;
+};
+
+/// 0 in every column at first. PETSc objects are destroyed on every path; a PETSc error ends the job, as MPI's do.
+/// Construction and destruction are collective. Memory: O(columns / ranks).
+class ColumnField {
+ public:
+  ColumnField(const comm::Comm& comm, const ColumnNumbering& columns);
+  ~ColumnField();
+  ColumnField(const ColumnField&) = delete;
+  ColumnField& operator=(const ColumnField&) = delete;
+
+  /// Collective: each column becomes the maximum of what it is and what any rank gives. At most one value a column and
+  /// rank.
+  void raise_to(std::span<const ColumnValue> values) { send(values, MAX_VALUES); }
+  /// Collective: adds what the ranks give. Whole numbers below 2^53 in all are added exactly, so in any order.
+  void add(std::span<const ColumnValue> values) { send(values, ADD_VALUES); }
+  /// Values of the columns that lie on this rank, ascending; rank after rank they are all columns. Local.
+  [[nodiscard]] std::vector<double> local() const;
+
+ private:
+  void send(std::span<const ColumnValue> values, InsertMode mode);
+  void check(PetscErrorCode code) const { CHKERRABORT(comm_, code); }
+
+  MPI_Comm comm_;
+  PetscInt used_;    // columns along x
+  PetscInt padded_;  // those of the DMDA: it must have one for each rank
+  DM grid_ = nullptr;
+  Vec values_ = nullptr;
+};
+
+}  // namespace packmpi::observe

@@ -1,0 +1,115 @@
+#include "observe/column_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/volume.hpp"
+#include "observe/column_field.hpp"
+
+namespace packmpi::observe {
+namespace {
+
+constexpr double width_in_diameters = 4.0;
+
+ColumnNumbering numbering(const scene::Scene& scene) {
+  ColumnNumbering columns;
+  const double width = width_in_diameters * 2.0 * scene.sizes.mean();
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+    columns.lengths[axis] = scene.box.size[axis];
+    columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.box.size[axis] / width));
+  }
+  return columns;
+}
+
+/// One value a column, ascending: `join` of all that have it.
+template <class Join>
+void join_columns(std::vector<ColumnValue>& values, Join&& join) {
+  std::stable_sort(values.begin(), values.end(),
+                   [](const ColumnValue& a, const ColumnValue& b) { return a.column < b.column; });
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (kept > 0 && values[kept - 1].column == values[k].column) {
+      values[kept - 1].value = join(values[kept - 1].value, values[k].value);
+    } else {
+      values[kept++] = values[k];
+    }
+  }
+  values.resize(kept);
+}
+
+/// Collective. Sums by column: terms become whole numbers of a quantum, a power of two that leaves their sum below
+/// 2^52.
+std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns, std::vector<ColumnValue> terms) {
+  double largest = 0.0;
+  for (const ColumnValue& term : terms) largest = std::max(largest, std::abs(term.value));
+  const double bound = comm.max(largest) * static_cast<double>(comm.sum(std::ssize(terms)));
+  int exponent = 0;
+  (void)std::frexp(bound, &exponent);
+  const double quantum = std::ldexp(1.0, exponent - 52);
+  for (ColumnValue& term : terms) term.value = std::nearbyint(term.value / quantum);
+  join_columns(terms, [](double a, double b) { return a + b; });
+  ColumnField field(comm, columns);
+  field.add(terms);
+  std::vector<double> here = field.local();
+  for (double& value : here) value *= quantum;
+  return here;
+}
+
+std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                         const ColumnNumbering& columns) {
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  std::vector<ColumnValue> values;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const Vec3 x = store.position(i);
+    values.push_back({columns.column(x), x[vertical] + store.radius(i)});
+  }
+  join_columns(values, [](double a, double b) { return std::max(a, b); });
+  ColumnField field(comm, columns);
+  field.raise_to(values);
+  return field.local();
+}
+
+std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Scene& scene,
+                                 const ColumnNumbering& columns) {
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  std::vector<ColumnValue> terms;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const Vec3 x = store.position(i);
+    terms.push_back({columns.column(x),
+                     geometry::volume_below(scene.box.dimension, store.radius(i), x[vertical], scene.box.height())});
+  }
+  return terms;
+}
+
+std::vector<ColumnValue> virials(const particles::Store& store, const scene::Scene& scene,
+                                 const neighbor::PairList& pairs, const ColumnNumbering& columns) {
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  std::vector<ColumnValue> terms;
+  each_contact(store, scene, pairs, [&](const ContactForce& contact) {
+    if (!(contact.middle[vertical] < scene.box.height())) return;
+    terms.push_back({columns.column(contact.middle), -contact.force[vertical] * contact.branch[vertical]});
+  });
+  return terms;
+}
+
+}  // namespace
+
+std::int64_t map_columns(const scene::Scene& scene) { return numbering(scene).size(); }
+
+ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                       const neighbor::PairList& pairs) {
+  const ColumnNumbering columns = numbering(scene);
+  ColumnMaps maps{.counts = columns.counts,
+                  .top = tops(comm, store, scene, columns),
+                  .solid_fraction = sums(comm, columns, volumes(store, scene, columns)),
+                  .vertical_stress = sums(comm, columns, virials(store, scene, pairs, columns))};
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+    maps.widths[axis] = columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
+  }
+  const double volume = scene.box.volume_between(0.0, scene.box.height()) / static_cast<double>(columns.size());
+  for (double& value : maps.solid_fraction) value /= volume;
+  for (double& value : maps.vertical_stress) value /= volume;
+  return maps;
+}
+
+}  // namespace packmpi::observe
