@@ -65,7 +65,8 @@ int start_tool(int argc, const char* const* argv) {
   }
   std::vector<std::string> words{python(), *package, argv[1], "--program", program.string()};
   words.insert(words.end(), argv + 2, argv + argc);
-  std::vector<char*> pointers;
+  std::vector<char*> pointers;  // as execvp wants them
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   execvp(pointers.front(), pointers.data());
