@@ -47,8 +47,8 @@ class Neighborhood {
   /// The frozen particles of this rank, owned; their copies from other ranks as ghosts.
   [[nodiscard]] const particles::Store& frozen() const noexcept { return frozen_.store(); }
 
-  /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts (frozen ones too),
-  /// makes the lists. Any position is taken, even NaN. Cost: O(owned + ghosts + candidates), two or three steps at 1:1.
+  /// Collective. Sends particles to the owners of their columns, sorts the owned by cell, gets ghosts, frozen ones too;
+  /// makes the lists. Any position is taken, even NaN. Cost: O(owned + ghosts + candidates), three steps at 1:1.
   void rebuild(particles::Store& store);
 
   /// Collective. Tells that all particles moved for `time_step` at speeds of at most `max_speed` (this rank's own
