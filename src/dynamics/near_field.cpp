@@ -23,11 +23,13 @@ double whole_power(double x, std::int64_t n) {
 
 double inverse_power(double d, double exponent) {
   constexpr double most = 512.0;  // beyond, the value is 0 or infinite for any length in metres
-  const double halves = 2.0 * std::fabs(exponent);
-  if (halves != std::floor(halves) || halves > most) return elementary::power(d, -exponent);
+  const double halves = std::nearbyint(2.0 * std::fabs(exponent));
+  if (!(halves <= most)) return elementary::power(d, -exponent);
   const auto count = static_cast<std::int64_t>(halves);
   double power = whole_power(d, count / 2);
   if (count % 2 == 1) power *= std::sqrt(d);
+  const double rest = std::fabs(exponent) - 0.5 * halves;  // a quarter at most: its power keeps all digits
+  if (rest != 0.0) power *= elementary::power(d, rest);
   return exponent < 0.0 ? power : 1.0 / power;
 }
 

@@ -28,8 +28,8 @@ TEST(AnyCpu, AreasOfCutDiscs) {
 }
 
 TEST(AnyCpu, NearFieldsOfAnyExponent) {
-  EXPECT_EQ(digest([](double x) { return inverse_power(1e-3 + x, 4.0 / 3.0); }), 15958074427721798697U);
-  EXPECT_EQ(digest([](double x) { return inverse_power(0.01, 10.0 * x); }), 7491935719782640315U);
+  EXPECT_EQ(digest([](double x) { return inverse_power(1e-3 + x, 4.0 / 3.0); }), 5559361073818841844U);
+  EXPECT_EQ(digest([](double x) { return inverse_power(0.01, 10.0 * x); }), 682547563973260978U);
 }
 
 TEST(AnyCpu, MeansOfTruncatedGaussians) {
