@@ -21,6 +21,13 @@ namespace packmpi::dynamics {
   return layout.dimension == 3 && layout.rotation ? 8 : 4;
 }
 
+/// What the contacts of a list have stored (scene::storings): double c of entry p at values[c * entries + p]. A step
+/// replaces it. Null where the law stores nothing.
+struct StoredVectors {
+  double* values = nullptr;
+  std::int64_t entries = 0;
+};
+
 /// Everything a kernel reads and writes. Pointers are not owned. A step may be done in several calls, one for each part
 /// of the slots in ascending order: the lists are then those of the part, and the ring is left alone between the calls.
 struct StepData {
@@ -46,6 +53,8 @@ struct StepData {
   Vec3 fluid_velocity;   ///< [m/s]
   Vec3 size;             ///< [m] container; the period on periodic axes
   std::array<bool, 2> periodic;
+  StoredVectors stored_pairs = {};  ///< of the entries from `first` on
+  StoredVectors stored_walls = {};  ///< of the entries from `wall_particle` on
 };
 
 /// Slots of a ring for a pair list's window. The room beyond it lets a block of pairs run on while the slots of its

@@ -6,37 +6,88 @@
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
-/// What the state of a particle is in memory, for the kernel's template arguments.
+/// What a record, a pair and a contact's store are in memory, for the kernel's template arguments: see
+/// scene/pair_channels.hpp.
 template <Features F>
 struct Memory {
   static constexpr particles::Layout layout = F.layout();
   static constexpr int stride = layout.stride;
   static constexpr int chunks = layout.dimension == 3 && layout.rotation ? 3 : 2;  // vectors of four a record
+  static constexpr int rows = 4 * chunks;
+  static constexpr int stored = scene::stored_doubles(F);
   static constexpr int accumulators = accumulators_of(layout);
-  static constexpr int forces = F.dimension == 2 && F.rotation ? 3 : F.dimension;  // in 2D the moment is the third
-  static constexpr int moments = accumulators == 8 ? 3 : 0;                        // from the fifth
 
-  /// Is this offset of a record subtracted (position, velocity) when a pair is formed, or added (radius, spin, ...)?
-  static constexpr bool differs(int offset) {
-    return (offset >= layout.position && offset < layout.position + layout.dimension) ||
-           (offset >= layout.velocity && offset < layout.velocity + layout.dimension);
+  /// How often a field at this offset is read.
+  static constexpr int reads(int offset) {
+    int count = 0;
+    for (const scene::Reading& row : scene::readings(F)) count += covers(row, offset) ? 1 : 0;
+    return count;
   }
-  /// Flips the sign of the first's fields that are subtracted.
-  static PACKMPI_INLINE BitLanes signs(int chunk) {
-    return BitLanes{sign(4 * chunk), sign(4 * chunk + 1), sign(4 * chunk + 2), sign(4 * chunk + 3)};
+  /// Is any field of the chunk read twice?
+  static constexpr bool twice(int chunk) {
+    bool any = false;
+    for (int lane = 0; lane < 4; ++lane) any = any || reads(4 * chunk + lane) > 1;
+    return any;
   }
-  static constexpr std::uint64_t sign(int offset) { return differs(offset) ? 0x8000000000000000U : 0U; }
+  static constexpr bool any_twice = twice(0) || twice(1) || twice(2);
+
+  /// Flips the sign of the first's fields that are subtracted in the first reading, or of those that were not, in the
+  /// second.
+  static PACKMPI_INLINE BitLanes signs(int chunk, bool second) {
+    const int o = 4 * chunk;
+    return BitLanes{sign(o, second), sign(o + 1, second), sign(o + 2, second), sign(o + 3, second)};
+  }
+  static constexpr std::uint64_t sign(int offset, bool second) {
+    bool differs = false;
+    for (const scene::Reading& row : scene::readings(F)) {
+      if (!covers(row, offset)) continue;
+      differs = row.combine == scene::Combine::difference;
+      if (!second) break;
+    }
+    return differs ? 0x8000000000000000U : 0U;
+  }
+
+  /// Is accumulator `number` given to the other end as it is, negated, or by a number of its own; or not at all?
+  static constexpr bool given(int number, scene::Mirror mirror) {
+    bool any = false;
+    for (const scene::Giving& row : scene::givings(F)) {
+      any = any || (row.mirror == mirror && number >= row.accumulator && number < row.accumulator + row.components);
+    }
+    return any;
+  }
+  static constexpr bool given(int number) {
+    return given(number, scene::Mirror::same) || given(number, scene::Mirror::opposite) ||
+           given(number, scene::Mirror::own);
+  }
+  static constexpr bool any_own = [] {
+    bool any = false;
+    for (const scene::Giving& row : scene::givings(F)) any = any || row.mirror == scene::Mirror::own;
+    return any;
+  }();
+  static constexpr std::uint64_t minus(int number) {
+    return given(number, scene::Mirror::opposite) ? 0xffffffffffffffffU : 0U;
+  }
+
+ private:
+  static constexpr bool covers(const scene::Reading& row, int offset) {
+    return offset >= row.offset && offset < row.offset + row.components;
+  }
 };
 
-/// Pairs (or wall contacts) in flight. Rows of `place` and then of `in` are the fields of a record, differences or sums
-/// over the pair; rows of `out` are accumulators.
+/// Pairs (or wall contacts) in flight. Rows of `in` are the fields of a record, combined over the pair; of `again`,
+/// those that are read a second time; of `out`, accumulators of the first; of `own`, those of the second that are not
+/// the first's; of `stored`, what the contact keeps.
+template <Features F>
 struct Block {
+  using M = Memory<F>;
   static constexpr int size = 128;
-  static constexpr int row = size + 8;        // rows a power of two apart would share cache sets
-  static constexpr int places = 4;            // fields in `place`
-  alignas(64) double place[places + 1][row];  // the last: the distance of a wall
-  alignas(64) double in[8][row];              // from field number `places` on
-  alignas(64) std::int64_t out[8][row];
+  static constexpr int row = size + 8;  // rows a power of two apart would share cache sets
+  alignas(64) double in[M::rows][row];
+  alignas(64) double again[M::any_twice ? M::rows : 1][row];
+  alignas(64) double distance[row];  // of a wall
+  alignas(64) std::int64_t out[M::accumulators][row];
+  alignas(64) std::int64_t own[M::any_own ? M::accumulators : 1][row];
+  alignas(64) double stored[M::stored > 0 ? M::stored : 1][row];
   alignas(64) double strength[size];
   alignas(64) LocalIndex first[size];  // slots of records; filled up to a multiple of 8 with the last pair
   alignas(64) LocalIndex second[size];
@@ -71,7 +122,8 @@ PACKMPI_INLINE double largest(const double* x, int count, double so_far) {
 }
 
 /// Take up to a block of pairs, as many as the ring holds above `base`, the lowest slot in use.
-PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block& b) {
+template <Features F>
+PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex base, Block<F>& b) {
   const std::int64_t left = data.pairs - pair;
   const int wanted = left < b.size ? static_cast<int>(left) : b.size;
   const LocalIndex* first = data.first + pair;
@@ -106,9 +158,28 @@ PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex bas
   }
 }
 
+/// What `count` contacts have stored, from entry `at` of a list on, into the rows; zero in the fill.
+template <Features F>
+PACKMPI_INLINE void fetch(const StoredVectors& from, std::int64_t at, Block<F>& b) {
+  for (int c = 0; c < Memory<F>::stored; ++c) {
+    const double* source = from.values + c * from.entries + at;
+    for (int p = 0; p < b.count; ++p) b.stored[c][p] = source[p];
+    for (int p = b.count; p < b.filled; ++p) b.stored[c][p] = 0.0;
+  }
+}
+
+/// And back.
+template <Features F>
+PACKMPI_INLINE void keep(const Block<F>& b, const StoredVectors& to, std::int64_t at) {
+  for (int c = 0; c < Memory<F>::stored; ++c) {
+    double* target = to.values + c * to.entries + at;
+    for (int p = 0; p < b.count; ++p) target[p] = b.stored[c][p];
+  }
+}
+
 /// Stage 1: records of both ends, differences and sums, transposed.
 template <Features F>
-PACKMPI_INLINE void pack(const double* records, Block& b) {
+PACKMPI_INLINE void pack(const double* records, Block<F>& b) {
   using M = Memory<F>;
   constexpr int stride = M::stride;
   const std::int64_t ahead = b.reach + 80;  // records that the next blocks will be the first to touch
@@ -122,46 +193,44 @@ PACKMPI_INLINE void pack(const double* records, Block& b) {
     __builtin_prefetch(i[0] + ahead * stride);  // a record spans two lines
     __builtin_prefetch(i[0] + ahead * stride + 8);
     for (int chunk = 0; chunk < M::chunks; ++chunk) {
-      const BitLanes sign = M::signs(chunk);
-      Lanes pair[4];
-      for (int e = 0; e < 4; ++e) {
-        pair[e] = load(j[e] + 4 * chunk) + as_doubles(as_bits(load(i[e] + 4 * chunk)) ^ sign);
-      }
-      transpose(pair[0], pair[1], pair[2], pair[3]);
-      for (int e = 0; e < 4; ++e) {
-        if (chunk == 0) store(b.place[e] + p, pair[e]);
-        if (chunk > 0) store(b.in[4 * (chunk - 1) + e] + p, pair[e]);
+      for (const bool second : {false, true}) {
+        if (second && !M::twice(chunk)) continue;
+        const BitLanes sign = M::signs(chunk, second);
+        Lanes pair[4];
+        for (int e = 0; e < 4; ++e) {
+          pair[e] = load(j[e] + 4 * chunk) + as_doubles(as_bits(load(i[e] + 4 * chunk)) ^ sign);
+        }
+        transpose(pair[0], pair[1], pair[2], pair[3]);
+        for (int e = 0; e < 4; ++e) store((second ? b.again : b.in)[4 * chunk + e] + p, pair[e]);
       }
     }
   }
 }
 
-/// Stage 3: integers back to one vector a pair, added to the accumulators of the first, and of the second with the
-/// reaction: forces change sign, moments do not.
+/// Stage 3: integers back to one vector a pair, added to the accumulators of the first, and of the second what is the
+/// same, negated or its own.
 template <Features F>
-PACKMPI_INLINE void scatter(std::int64_t* ring, Block& b) {
-  constexpr int accumulators = Memory<F>::accumulators;
-  constexpr int forces = Memory<F>::forces;
-  constexpr int moments = Memory<F>::moments;
-  constexpr std::uint64_t minus = 0xffffffffffffffff;
-  constexpr BitLanes flip = {minus, minus, F.dimension == 3 ? minus : 0, 0};
+PACKMPI_INLINE void scatter(std::int64_t* ring, Block<F>& b) {
+  using M = Memory<F>;
+  constexpr int accumulators = M::accumulators;
   for (int p = 0; p < b.filled; p += 4) {
-    BitLanes force[4];
-    BitLanes moment[4];
-    for (int e = 0; e < 4; ++e) {
-      force[e] = e < forces ? load_bits(b.out[e] + p) : BitLanes{};
-      moment[e] = e < moments ? load_bits(b.out[4 + e] + p) : BitLanes{};
-    }
-    transpose(force[0], force[1], force[2], force[3]);
-    if constexpr (moments > 0) transpose(moment[0], moment[1], moment[2], moment[3]);
-    for (int e = 0; e < 4; ++e) {
-      std::int64_t* i = ring + std::int64_t{b.first_slot[p + e]} * accumulators;
-      std::int64_t* j = ring + std::int64_t{b.second_slot[p + e]} * accumulators;
-      store_bits(i, load_bits(i) + force[e]);
-      store_bits(j, load_bits(j) + ((force[e] ^ flip) - flip));
-      if constexpr (moments > 0) {
-        store_bits(i + 4, load_bits(i + 4) + moment[e]);
-        store_bits(j + 4, load_bits(j + 4) + moment[e]);
+    for (int a = 0; a < accumulators; a += 4) {
+      const BitLanes flip = {M::minus(a), M::minus(a + 1), M::minus(a + 2), M::minus(a + 3)};
+      BitLanes given[4];
+      BitLanes taken[4];
+      for (int e = 0; e < 4; ++e) given[e] = M::given(a + e) ? load_bits(b.out[a + e] + p) : BitLanes{};
+      if constexpr (M::any_own) {
+        for (int e = 0; e < 4; ++e) {  // what is not its own is negated below
+          taken[e] = M::given(a + e, scene::Mirror::own) ? load_bits(b.own[a + e] + p) : given[e];
+        }
+        transpose(taken[0], taken[1], taken[2], taken[3]);
+      }
+      transpose(given[0], given[1], given[2], given[3]);
+      for (int e = 0; e < 4; ++e) {
+        std::int64_t* i = ring + std::int64_t{b.first_slot[p + e]} * accumulators + a;
+        std::int64_t* j = ring + std::int64_t{b.second_slot[p + e]} * accumulators + a;
+        store_bits(i, load_bits(i) + given[e]);
+        store_bits(j, load_bits(j) + (((M::any_own ? taken[e] : given[e]) ^ flip) - flip));
       }
     }
   }

@@ -1,8 +1,10 @@
 /// The contact law of one pair or wall, branch-free: the body of the loops that the compiler vectorises.
-/// Exactly antisymmetric: exchanging the ends negates the force and keeps the moment, bit for bit.
+/// Exactly antisymmetric: exchanging the ends negates the force and keeps the moment, bit for bit; of what is stored,
+/// scene::storings tells which is negated.
 #pragma once
 #include "dynamics/kernel_lanes.hpp"
 #include "dynamics/law.hpp"
+#include "scene/pair_channels.hpp"
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
@@ -16,28 +18,73 @@ struct Constants {
   double spin_slip;
   double slip;  // slip_mass * slip_rate: a friction force of slip * m* * |u| stops (or damps) the slip
   double lowest_force;
+  double shear_stiffness, shear_damping, rolling_friction, twisting_friction;  // friction with memory
+  double time_step;
+  double curvature;  // 1/r, equal radii
 };
 
-PACKMPI_INLINE Constants constants_of(const Law& law, const LawConstants& c) {
-  return {c.stiffness,     c.damping,       c.friction,    c.reduced_radius,
-          c.reduced_mass,  law.mass_factor, law.spin_slip, law.slip_mass * law.slip_rate,
-          law.lowest_force};
+PACKMPI_INLINE Constants constants_of(const Law& law, const LawConstants& c, double time_step) {
+  return {c.stiffness,
+          c.damping,
+          c.friction,
+          c.reduced_radius,
+          c.reduced_mass,
+          law.mass_factor,
+          law.spin_slip,
+          law.slip_mass * law.slip_rate,
+          law.lowest_force,
+          c.shear_stiffness,
+          c.shear_damping,
+          c.rolling_friction,
+          c.twisting_friction,
+          time_step,
+          1.0 / law.wall.reduced_radius};
 }
 
 struct Vector {
   double x, y, z;  // 2D: z is unused; of a spin, z alone is used
 };
 
-/// Force on the first [N], moment over radius q = n x f_t on both [N], and |normal force| [N], not finite if the state
-/// is not.
-struct Force {
-  Vector force, moment;
-  double strength;
-};
+PACKMPI_INLINE double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PACKMPI_INLINE Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+PACKMPI_INLINE Vector scaled(double f, const Vector& a) { return {f * a.x, f * a.y, f * a.z}; }
+/// a + f b
+PACKMPI_INLINE Vector sum(const Vector& a, double f, const Vector& b) {
+  return {a.x + f * b.x, a.y + f * b.y, a.z + f * b.z};
+}
 
 /// Reduced radius [m] and mass [kg].
 struct Reduced {
   double radius, mass;
+};
+
+/// What is stored for a contact [m], oriented from the first end: the displacements of the tangential, rolling and
+/// twisting springs. In 2D the first components alone are used.
+struct Springs {
+  Vector slip, roll;
+  double twist;
+};
+
+/// Two ends where they touch. n: unit normal from the first to the second.
+struct Meeting {
+  Reduced reduced;
+  Vector n;
+  double bend;     // 1 / distance of the centres; 0 at a flat wall [1/m]
+  double overlap;  // 0 if they do not touch [m]
+  Vector v;        // v_second - v_first [m/s]
+  Vector s;        // sum of r omega [m/s]
+  Vector spin;     // omega_second - omega_first [rad/s]; rolling only
+  Springs springs;
+};
+
+/// Force on the first [N]; moment over radius q = n x f_t on both [N]; torque on the first, its negative on the second
+/// [N m]; |normal force| [N], not finite if the state is not; the springs after the step.
+struct Force {
+  Vector force, moment, torque;
+  double strength;
+  Springs springs;
 };
 
 /// From K = k_i + k_j and S = r_i + r_j: 1/r* = K, 1/m* = mass_factor K^2 (K - 3/S), with one division.
@@ -51,56 +98,173 @@ PACKMPI_INLINE Reduced reduced_of_wall(double mass_factor, double curvature, dou
   return {radius, 1.0 / (mass_factor * curvature * curvature * curvature)};
 }
 
-/// Normal force: 0 without overlap. Comparisons are written so that a NaN passes through them.
-PACKMPI_INLINE double normal_force(const Constants& c, const Reduced& reduced, double overlap, double rate) {
-  const double contact = root(reduced.radius * overlap);
-  const double force = c.stiffness * contact * overlap + c.damping * root(reduced.mass * contact) * rate;
-  return force < c.lowest_force ? c.lowest_force : force;
+/// Where two particles meet.
+struct Touch {
+  Vector normal;
+  double bend;  // 1 / distance of the centres; 0 at a flat wall
+  double gap;   // the overlap; negative: they do not touch
+};
+
+/// Of two particles at a distance of (x, y, z), whose square is given; their radii add up to `radius`.
+PACKMPI_INLINE Touch touch(double x, double y, double z, double square, double radius) {
+  const double distance = root(square + tiny);
+  const double inverse = 1.0 / distance;
+  return {{x * inverse, y * inverse, z * inverse}, inverse, radius - distance};
+}
+
+/// From the doubles in the order of scene::storings.
+template <Features F>
+PACKMPI_INLINE Springs springs_of(const double* x) {
+  if constexpr (!F.memory) return {};
+  if constexpr (F.dimension == 2) return {{x[0], 0.0, 0.0}, {F.rolling ? x[1] : 0.0, 0.0, 0.0}, 0.0};
+  if constexpr (!F.rolling) return {{x[0], x[1], x[2]}, {}, 0.0};
+  return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}, x[6]};
+}
+
+/// What the springs of a contact share in a step.
+struct SpringState {
+  double contact;    // radius a of the contact area, sqrt(r* delta) [m]
+  double stiffness;  // k = 8 G* a [N/m]
+  double drag;       // k dt + eta: a spring that begins to move at u has grown by u dt and damps, too [N s/m]
+  double kept;       // the smaller of the overlaps before and after the step [m]
+  double overlap;
+};
+
+/// `damped`: sqrt(m* a). `rate`: at which the overlap grows; `drift`: square of the centres' tangential velocity.
+PACKMPI_INLINE SpringState spring_state(const Constants& c, const Meeting& at, double contact, double damped,
+                                        double rate, double drift) {
+  const double dt = c.time_step;
+  // x(t) = x(t - dt) + v(t) dt: the overlap of the step before, to the third order of dt.
+  const double before = at.overlap - dt * (rate + 0.5 * dt * at.bend * drift);
+  const double positive = before < 0.0 ? 0.0 : before;
+  const double stiffness = c.shear_stiffness * contact;
+  return {contact, stiffness, stiffness * dt + c.shear_damping * damped, positive < at.overlap ? positive : at.overlap,
+          at.overlap};
+}
+
+/// The part of an elastic displacement that is left after the contact has grown (the force stays, so the displacement
+/// falls as 1/a) or shrunk (the displacement stays, so the force falls as a): a load cycle gives no energy. Exactly 1
+/// at rest.
+PACKMPI_INLINE double kept_part(const SpringState& now) { return root(now.kept / (now.overlap + tiny)); }
+
+/// The same for a vector in the tangent plane, which is turned with the pair: projected on the new plane at its length.
+PACKMPI_INLINE Vector turned(const SpringState& now, const Vector& n, const Vector& a) {
+  const double off = dot(a, n);
+  const Vector flat = sum(a, -off, n);
+  const double square = dot(flat, flat);
+  const double part = root((square + off * off) * now.kept / (square * now.overlap + tiny));
+  return scaled(part, flat);
+}
+
+/// A spring and its dashpot, in a row with a slider of the limit `most` [N]: the force for a displacement `x` (before
+/// the step) that grows at `u`, unless it slides; x becomes that after the step.
+PACKMPI_INLINE Vector pull(const SpringState& now, const Constants& c, double most, const Vector& u, Vector& x) {
+  const Vector elastic = scaled(now.stiffness, x);
+  const Vector trial = sum(elastic, now.drag, u);
+  const double part = most / root(dot(trial, trial) + tiny);
+  const Vector force = scaled(part < 1.0 ? part : 1.0, trial);
+  x = sum(x, c.time_step / (now.drag + tiny), sum(force, -1.0, elastic));
+  return force;
+}
+
+/// The same for a displacement that is a number.
+PACKMPI_INLINE double pull(const SpringState& now, const Constants& c, double most, double u, double& x) {
+  const double elastic = now.stiffness * x;
+  const double trial = elastic + now.drag * u;
+  const double strength = magnitude(trial);
+  const double force = with_sign_of(most < strength ? most : strength, trial);
+  x = x + c.time_step / (now.drag + tiny) * (force - elastic);
+  return force;
 }
 
 /// n from first to second, u = v_second - v_first, s = sum of r omega.
 template <Features F>
-PACKMPI_INLINE Force contact_3d(const Constants& c, const Reduced& reduced, const Vector& n, double overlap,
-                                const Vector& v, const Vector& s) {
-  const double rate = -(v.x * n.x + v.y * n.y + v.z * n.z);
-  const double normal = normal_force(c, reduced, overlap, rate);
+PACKMPI_INLINE Force contact_3d(const Constants& c, const Meeting& at) {
+  const Vector n = at.n;
+  const double rate = -dot(at.v, n);
+  const double contact = root(at.reduced.radius * at.overlap);
+  const double damped = root(at.reduced.mass * contact);
+  const double raw = c.stiffness * contact * at.overlap + c.damping * damped * rate;
+  const double normal = raw < c.lowest_force ? c.lowest_force : raw;  // a NaN passes through
   const double strength = magnitude(normal);
   if constexpr (!F.friction) {
-    return {{-(normal * n.x), -(normal * n.y), -(normal * n.z)}, {}, strength};
+    return {{-(normal * n.x), -(normal * n.y), -(normal * n.z)}, {}, {}, strength, {}};
   } else {
-    Vector u = {v.x + rate * n.x, v.y + rate * n.y, v.z + rate * n.z};
-    if constexpr (F.rotation) {
-      u.x = u.x - c.spin_slip * (s.y * n.z - s.z * n.y);
-      u.y = u.y - c.spin_slip * (s.z * n.x - s.x * n.z);
-      u.z = u.z - c.spin_slip * (s.x * n.y - s.y * n.x);
+    Vector u = sum(at.v, rate, n);
+    const double drift = dot(u, u);
+    if constexpr (F.rotation) u = sum(u, -c.spin_slip, cross(at.s, n));
+    Springs springs = at.springs;
+    Vector t;
+    Vector torque = {};
+    double trace = 0.0;
+    if constexpr (F.memory) {
+      const SpringState now = spring_state(c, at, contact, damped, rate, drift);
+      springs.slip = turned(now, n, springs.slip);
+      t = pull(now, c, c.friction * strength, u, springs.slip);
+      trace = dot(u, u);
+      if constexpr (F.rolling) {
+        const double about = dot(at.spin, n);
+        const Vector roll = scaled(at.reduced.radius, sum(at.spin, -about, n));
+        springs.roll = turned(now, n, springs.roll);
+        springs.twist = kept_part(now) * springs.twist;
+        const Vector r = pull(now, c, c.rolling_friction * strength, roll, springs.roll);
+        const double w = pull(now, c, c.twisting_friction * strength, at.reduced.radius * about, springs.twist);
+        torque = scaled(at.reduced.radius, sum(r, w, n));
+      }
+    } else {
+      const double square = dot(u, u) + tiny;
+      const double sliding = c.friction * strength / root(square);
+      const double stopping = c.slip * at.reduced.mass;
+      t = scaled(sliding < stopping ? sliding : stopping, u);
+      trace = square;
     }
-    const double square = u.x * u.x + u.y * u.y + u.z * u.z + tiny;
-    const double sliding = c.friction * strength / root(square);
-    const double stopping = c.slip * reduced.mass;
-    const double slope = sliding < stopping ? sliding : stopping;
-    const Vector t = {slope * u.x, slope * u.y, slope * u.z};
     return {{t.x - normal * n.x, t.y - normal * n.y, t.z - normal * n.z},
-            {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x},
-            strength + 0.0 * square};
+            cross(n, t),
+            torque,
+            strength + 0.0 * trace,
+            springs};
   }
 }
 
 /// In the plane the tangent is (-n_y, n_x) and the slip a number along it: no root, no quotient.
 template <Features F>
-PACKMPI_INLINE Force contact_2d(const Constants& c, const Reduced& reduced, const Vector& n, double overlap,
-                                const Vector& v, double s) {
-  const double rate = -(v.x * n.x + v.y * n.y);
-  const double normal = normal_force(c, reduced, overlap, rate);
+PACKMPI_INLINE Force contact_2d(const Constants& c, const Meeting& at) {
+  const Vector n = at.n;
+  const double rate = -(at.v.x * n.x + at.v.y * n.y);
+  const double contact = root(at.reduced.radius * at.overlap);
+  const double damped = root(at.reduced.mass * contact);
+  const double raw = c.stiffness * contact * at.overlap + c.damping * damped * rate;
+  const double normal = raw < c.lowest_force ? c.lowest_force : raw;
   const double strength = magnitude(normal);
   if constexpr (!F.friction) {
-    return {{-(normal * n.x), -(normal * n.y), 0.0}, {}, strength};
+    return {{-(normal * n.x), -(normal * n.y), 0.0}, {}, {}, strength, {}};
   } else {
-    double u = v.y * n.x - v.x * n.y;
-    if constexpr (F.rotation) u = u - c.spin_slip * s;
-    const double sliding = c.friction * strength;
-    const double stopping = c.slip * reduced.mass * magnitude(u);
-    const double t = with_sign_of(sliding < stopping ? sliding : stopping, u);
-    return {{-(t * n.y) - normal * n.x, t * n.x - normal * n.y, 0.0}, {0.0, 0.0, t}, strength + 0.0 * u};
+    double u = at.v.y * n.x - at.v.x * n.y;
+    const double drift = u * u;
+    if constexpr (F.rotation) u = u - c.spin_slip * at.s.z;
+    Springs springs = at.springs;
+    double t = 0.0;
+    double torque = 0.0;
+    if constexpr (F.memory) {
+      const SpringState now = spring_state(c, at, contact, damped, rate, drift);
+      const double part = kept_part(now);
+      springs.slip.x = part * springs.slip.x;
+      t = pull(now, c, c.friction * strength, u, springs.slip.x);
+      if constexpr (F.rolling) {
+        springs.roll.x = part * springs.roll.x;
+        torque = at.reduced.radius *
+                 pull(now, c, c.rolling_friction * strength, at.reduced.radius * at.spin.z, springs.roll.x);
+      }
+    } else {
+      const double sliding = c.friction * strength;
+      const double stopping = c.slip * at.reduced.mass * magnitude(u);
+      t = with_sign_of(sliding < stopping ? sliding : stopping, u);
+    }
+    return {{-(t * n.y) - normal * n.x, t * n.x - normal * n.y, 0.0},
+            {0.0, 0.0, t},
+            {0.0, 0.0, torque},
+            strength + 0.0 * u,
+            springs};
   }
 }
 

@@ -11,13 +11,13 @@ namespace packmpi::dynamics::PACKMPI_KERNEL {
 template <Features F>
 struct Stepper {
   const StepData& data;
-  Constants pair = constants_of(data.law, data.law.pair);
-  Constants wall = constants_of(data.law, data.law.wall);
+  Constants pair = constants_of(data.law, data.law.pair, data.time_step);
+  Constants wall = constants_of(data.law, data.law.wall, data.time_step);
   Periods periods = periods_of(data);
   Motion motion = motion_of<F>(data);
   double scale = 1.0 / data.force_quantum;
   Tally tally{};
-  Block block;  // 30 KB, on the stack
+  Block<F> block;  // 30 KB, on the stack
   LocalIndex done;
   std::int64_t walls_done = 0;
 
@@ -43,11 +43,13 @@ struct Stepper {
     for (std::int64_t p = 0;; p += block.count) {
       finish(p < data.pairs ? data.first[p] : data.end);
       if (p >= data.pairs) break;
-      take(data, p, done, block);
+      take<F>(data, p, done, block);
+      fetch<F>(data.stored_pairs, p, block);
       pack<F>(data.records, block);
       resolve_pairs<F>(block, pair, periods, scale);
       tally.pair_force = largest(block.strength, block.filled, tally.pair_force);
       scatter<F>(data.ring, block);
+      keep<F>(block, data.stored_pairs, p);
     }
     std::int64_t* dump = data.ring + (data.ring_mask + 1) * Memory<F>::accumulators;
     for (int a = 0; a < Memory<F>::accumulators; ++a) dump[a] = 0;
@@ -59,8 +61,10 @@ struct Stepper {
     const bool broken = (tally.broken[0] | tally.broken[1] | tally.broken[2]) != 0;
     const double square = v[0] * v[0] + v[1] * v[1] + (planar_spin ? 0.0 : v[2] * v[2]);
     const double limit = max_quanta * data.force_quantum;
-    const bool in_range = tally.pair_force * (1.0 + data.law.pair.friction) <= limit &&
-                          tally.wall_force * (1.0 + data.law.wall.friction) <= limit;  // false for NaN
+    const auto holds = [&](const LawConstants& c, double force) {
+      return force * (1.0 + c.friction + c.rolling_friction + c.twisting_friction) <= limit;  // false for NaN
+    };
+    const bool in_range = holds(data.law.pair, tally.pair_force) && holds(data.law.wall, tally.wall_force);
     const double both = tally.pair_force + tally.wall_force;
     const double most = tally.pair_force < tally.wall_force ? tally.wall_force : tally.pair_force;
     const double force = both - both == 0.0 ? most : __builtin_nan("");
@@ -75,18 +79,24 @@ static StepReport step(const StepData& data) {
   return stepper.report();
 }
 
-/// The kernels there are, by number: which moving parts (0 none, 1 friction, 2 friction and rotation), then three
-/// switches.
-constexpr int kernel_count = 24;
+/// The kernels there are, by number: which moving parts, each of which has more than the one before (nothing, friction,
+/// rotation; or with memory friction, rotation, rolling), then graded, periodic, and without memory drag: with it drag
+/// is always in, its coefficient zero where the scene has none.
+constexpr int plain_kernels = 24;
+constexpr int kernel_count = plain_kernels + 12;
 
 constexpr Features features_of(int number) {
   Features f;
   f.dimension = PACKMPI_DIMENSION;
-  f.rotation = number / 8 == 2;
-  f.friction = number / 8 >= 1;
-  f.drag = (number & 1) != 0;
-  f.graded = (number & 2) != 0;
-  f.periodic = (number & 4) != 0;
+  f.memory = number >= plain_kernels;
+  const int own = f.memory ? 2 * (number - plain_kernels) + 1 : number;
+  const int moving = own / 8;
+  f.rolling = f.memory && moving == 2;
+  f.rotation = moving >= (f.memory ? 1 : 2);
+  f.friction = f.memory || moving >= 1;
+  f.drag = (own & 1) != 0;
+  f.graded = (own & 2) != 0;
+  f.periodic = (own & 4) != 0;
   f.near_field = false;
   return f;
 }
@@ -100,6 +110,10 @@ struct Table<std::integer_sequence<int, Number...>> {
 using Kernels = Table<std::make_integer_sequence<int, kernel_count>>;
 
 Kernel kernel(const Features& f) {
+  if (f.memory) {
+    const int moving = f.rolling ? 2 : (f.rotation ? 1 : 0);
+    return Kernels::kernels[plain_kernels + moving * 4 + (f.periodic ? 2 : 0) + (f.graded ? 1 : 0)];
+  }
   const int moving = f.rotation ? 2 : (f.friction ? 1 : 0);  // spin without friction is rare: friction zero does it
   return Kernels::kernels[moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0)];
 }

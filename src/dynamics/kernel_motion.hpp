@@ -19,46 +19,46 @@ PACKMPI_INLINE Plane plane_of(const StepData& data, neighbor::Wall wall) {
   return {axis, high ? 1.0 : -1.0, high ? data.size[static_cast<unsigned>(axis)] : 0.0};
 }
 
-/// Fill entry p of the block for one particle at one wall: the wall is a second end at rest.
+/// Fill entry p of the block for one particle at one wall: the wall is a second end at rest, all its fields zero.
 template <Features F>
-PACKMPI_INLINE void put_wall(const StepData& data, Block& b, int p, LocalIndex particle, neighbor::Wall wall) {
+PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalIndex particle, neighbor::Wall wall) {
+  using M = Memory<F>;
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
   const Plane plane = plane_of<F>(data, wall);
-  for (int a = F.dimension; a < layout.stride; ++a) {  // places but the position
-    if (a < Block::places) b.place[a][p] = record[a];
-    if (a >= Block::places) b.in[a - Block::places][p] = record[a];
+  for (int a = 0; a < layout.stride; ++a) {
+    b.in[a][p] = M::sign(a, false) != 0 ? -record[a] : record[a];
+    if (M::reads(a) > 1) b.again[a][p] = M::sign(a, true) != 0 ? -record[a] : record[a];
   }
-  for (int a = 0; a < F.dimension; ++a) {
-    b.place[a][p] = a == plane.axis ? plane.sign : 0.0;
-    b.in[layout.velocity - Block::places + a][p] = -record[layout.velocity + a];
-  }
-  b.place[Block::places][p] = plane.offset - plane.sign * record[plane.axis];
+  for (int a = 0; a < F.dimension; ++a) b.in[a][p] = a == plane.axis ? plane.sign : 0.0;
+  b.distance[p] = plane.offset - plane.sign * record[plane.axis];
 }
 
+/// Contacts of the entries [from, to) of the wall list.
 template <Features F>
-PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block& b, Tally& tally,
+PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double scale, Block<F>& b, Tally& tally,
                               std::int64_t from, std::int64_t to) {
-  constexpr int accumulators = Memory<F>::accumulators;
-  constexpr int forces = Memory<F>::forces;
-  constexpr int moments = Memory<F>::moments;
+  using M = Memory<F>;
   while (from < to) {
     const int count = to - from < b.size ? static_cast<int>(to - from) : b.size;
+    b.count = count;
     b.filled = (count + 7) & ~7;
     for (int p = 0; p < b.filled; ++p) {
       const std::int64_t entry = from + (p < count ? p : count - 1);
       put_wall<F>(data, b, p, data.wall_particle[entry], data.wall[entry]);
     }
+    fetch<F>(data.stored_walls, from, b);
     resolve_walls<F>(b, c, scale);
+    keep<F>(b, data.stored_walls, from);
     tally.wall_force = largest(b.strength, b.filled, tally.wall_force);
     for (int p = 0; p < count; ++p) {
-      std::int64_t* sum = data.ring + (data.wall_particle[from + p] & data.ring_mask) * accumulators;
-      const auto add = [&](int a) {  // wraps: a force out of range is garbage, not undefined
+      std::int64_t* sum = data.ring + (data.wall_particle[from + p] & data.ring_mask) * M::accumulators;
+      for (int a = 0; a < M::accumulators; ++a) {
+        if (!M::given(a)) continue;
+        // Wraps: a force out of range is garbage, not undefined.
         sum[a] =
             static_cast<std::int64_t>(static_cast<std::uint64_t>(sum[a]) + static_cast<std::uint64_t>(b.out[a][p]));
-      };
-      for (int a = 0; a < forces; ++a) add(a);
-      for (int a = 0; a < moments; ++a) add(4 + a);
+      }
     }
     from += count;
   }

@@ -24,102 +24,136 @@ PACKMPI_INLINE double shortest(double d, double period, double half) {
   return d < -half ? d + period : d;
 }
 
+/// 1/r of both ends, their mean, and half of second - first [1/m].
+struct Curvatures {
+  double first, second, mean, half;
+};
+
+/// Torque over the radius [N] of the first and of the second; equal radii: the same curvature.
 template <Features F>
-PACKMPI_INLINE void put(Block& b, int p, const Force& f, double scale) {
+PACKMPI_INLINE void put_moment(Block<F>& b, int p, int accumulator, double moment, double torque, double scale,
+                               const Curvatures& k) {
+  if constexpr (!F.rolling) {
+    b.out[accumulator][p] = to_integer(moment * scale);
+  } else {
+    b.out[accumulator][p] = to_integer((moment + torque * k.first) * scale);
+    b.own[accumulator][p] = to_integer((moment - torque * k.second) * scale);
+  }
+}
+
+template <Features F>
+PACKMPI_INLINE void put(Block<F>& b, int p, const Force& f, const Curvatures& k, double scale) {
   b.out[0][p] = to_integer(f.force.x * scale);
   b.out[1][p] = to_integer(f.force.y * scale);
   if constexpr (F.dimension == 3) b.out[2][p] = to_integer(f.force.z * scale);
-  if constexpr (F.dimension == 2 && F.rotation) b.out[2][p] = to_integer(f.moment.z * scale);
+  if constexpr (F.dimension == 2 && F.rotation) put_moment<F>(b, p, 2, f.moment.z, f.torque.z, scale, k);
   if constexpr (F.dimension == 3 && F.rotation) {
-    b.out[4][p] = to_integer(f.moment.x * scale);
-    b.out[5][p] = to_integer(f.moment.y * scale);
-    b.out[6][p] = to_integer(f.moment.z * scale);
+    put_moment<F>(b, p, 4, f.moment.x, f.torque.x, scale, k);
+    put_moment<F>(b, p, 5, f.moment.y, f.torque.y, scale, k);
+    put_moment<F>(b, p, 6, f.moment.z, f.torque.z, scale, k);
   }
   b.strength[p] = f.strength;
 }
 
+/// Three neighbouring rows, or in the plane two, or of a spin one.
+template <Features F>
+PACKMPI_INLINE Vector vector_at(const double (*rows)[Block<F>::row], int field, int p) {
+  if constexpr (F.dimension == 3) return {rows[field][p], rows[field + 1][p], rows[field + 2][p]};
+  return {rows[field][p], rows[field + 1][p], 0.0};
+}
+template <Features F>
+PACKMPI_INLINE Vector spin_at(const double (*rows)[Block<F>::row], int p) {
+  constexpr int field = F.layout().spin;
+  if constexpr (!F.rotation) return {};
+  if constexpr (F.dimension == 3) return vector_at<F>(rows, field, p);
+  return {0.0, 0.0, rows[field][p]};
+}
+
+/// What contact p has stored.
+template <Features F>
+PACKMPI_INLINE Springs springs_at(const Block<F>& b, int p) {
+  double values[scene::most_stored_doubles] = {};
+  for (int c = 0; c < Memory<F>::stored; ++c) values[c] = b.stored[c][p];
+  return springs_of<F>(values);
+}
+
+template <Features F>
+PACKMPI_INLINE void put_springs(Block<F>& b, int p, const Springs& s) {
+  const double all[] = {s.slip.x, s.slip.y, s.slip.z, s.roll.x, s.roll.y, s.roll.z, s.twist};
+  for (int c = 0; c < Memory<F>::stored; ++c) b.stored[c][p] = all[F.dimension == 3 ? c : 3 * c];
+}
+
+/// From the sum and the difference: exchanging the ends exchanges them, bit for bit.
+template <Features F>
+PACKMPI_INLINE Curvatures curvatures_at(const Block<F>& b, int p, const Constants& c) {
+  if constexpr (!F.graded) return {c.curvature, c.curvature, c.curvature, 0.0};
+  constexpr int field = F.layout().curvature;
+  const double sum = b.in[field][p];
+  const double difference = b.again[field][p];
+  return {0.5 * (sum - difference), 0.5 * (sum + difference), 0.5 * sum, 0.5 * difference};
+}
+
 /// The contact of entry p, given its normal and overlap.
 template <Features F>
-PACKMPI_INLINE void contact(Block& b, int p, const Constants& c, const Reduced& reduced, const Vector& n,
-                            double overlap, double scale) {
-  constexpr particles::Layout layout = F.layout();
-  constexpr int v = layout.velocity - Block::places;
-  constexpr int s = F.rotation ? layout.spin - Block::places : v;
-  if constexpr (F.dimension == 3) {
-    put<F>(b, p,
-           contact_3d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], b.in[v + 2][p]},
-                         {b.in[s][p], b.in[s + 1][p], b.in[s + 2][p]}),
-           scale);
-  } else {
-    put<F>(b, p, contact_2d<F>(c, reduced, n, overlap, {b.in[v][p], b.in[v + 1][p], 0.0}, b.in[s][p]), scale);
+PACKMPI_INLINE void contact(Block<F>& b, int p, const Constants& c, const Reduced& reduced, const Touch& at,
+                            double scale) {
+  Curvatures k = {};
+  Meeting meeting = {reduced,
+                     at.normal,
+                     at.bend,
+                     at.gap < 0.0 ? 0.0 : at.gap,
+                     vector_at<F>(b.in, F.layout().velocity, p),
+                     spin_at<F>(b.in, p),
+                     {},
+                     springs_at<F>(b, p)};
+  if constexpr (F.rolling) {
+    k = curvatures_at<F>(b, p, c);
+    // k_j s_j - k_i s_i from sums and differences; of equal radii k (s_j - s_i).
+    meeting.spin = scaled(k.mean, spin_at<F>(b.again, p));
+    if constexpr (F.graded) meeting.spin = sum(meeting.spin, k.half, meeting.s);
   }
-}
-
-/// Curvature of entry p: the sum over the pair, or that of the particle at a wall.
-template <Features F>
-PACKMPI_INLINE double curvature_at(const Block& b, int p) {
-  constexpr int field = F.layout().curvature;
-  if constexpr (field < Block::places) {
-    return b.place[field][p];
-  } else {
-    return b.in[field - Block::places][p];
-  }
-}
-
-/// Where two particles meet.
-struct Touch {
-  Vector normal;
-  double gap;  // the overlap; negative: they do not touch
-};
-
-/// Of two particles at a distance of (x, y, z), whose square is given; their radii add up to `radius`.
-PACKMPI_INLINE Touch touch(double x, double y, double z, double square, double radius) {
-  const double distance = root(square + tiny);
-  const double inverse = 1.0 / distance;
-  return {{x * inverse, y * inverse, z * inverse}, radius - distance};
+  const Force f = F.dimension == 3 ? contact_3d<F>(c, meeting) : contact_2d<F>(c, meeting);
+  put<F>(b, p, f, k, scale);
+  put_springs<F>(b, p, f.springs);
 }
 
 /// All pairs of the block.
 template <Features F>
-PACKMPI_INLINE void resolve_pairs(Block& b, const Constants& c, const Periods& periods, double scale) {
+PACKMPI_INLINE void resolve_pairs(Block<F>& b, const Constants& c, const Periods& periods, double scale) {
   constexpr particles::Layout layout = F.layout();
   const Constants k = c;
   const Periods w = periods;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    double x = b.place[0][p];
-    double y = b.place[1][p];
-    const double z = F.dimension == 3 ? b.place[2][p] : 0.0;
+    double x = b.in[0][p];
+    double y = b.in[1][p];
+    const double z = F.dimension == 3 ? b.in[2][p] : 0.0;
     if constexpr (F.periodic) {
       x = shortest(x, w.period[0], w.half[0]);
       if constexpr (F.dimension == 3) y = shortest(y, w.period[1], w.half[1]);
     }
     double square = x * x + y * y;
     if constexpr (F.dimension == 3) square = square + z * z;
-    const double radius = b.place[layout.radius][p];
-    const Touch at = touch(x, y, z, square, radius);
-    const double overlap = at.gap < 0.0 ? 0.0 : at.gap;
+    const double radius = b.in[layout.radius][p];
     Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, curvature_at<F>(b, p), radius);
-    contact<F>(b, p, k, reduced, at.normal, overlap, scale);
+    if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], radius);
+    contact<F>(b, p, k, reduced, touch(x, y, z, square, radius), scale);
   }
 }
 
-/// All wall contacts of the block; rows 0 .. dimension-1 of `place` hold the normal, towards the wall, the last one the
-/// distance of the centre from the plane, negative beyond it.
+/// All wall contacts of the block; rows 0 .. dimension-1 of `in` hold the normal, towards the wall, `distance` that of
+/// the centre from the plane, negative beyond it.
 template <Features F>
-PACKMPI_INLINE void resolve_walls(Block& b, const Constants& c, double scale) {
+PACKMPI_INLINE void resolve_walls(Block<F>& b, const Constants& c, double scale) {
   constexpr particles::Layout layout = F.layout();
   const Constants k = c;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    const Vector n = {b.place[0][p], b.place[1][p], F.dimension == 3 ? b.place[2][p] : 0.0};
-    const double radius = b.place[layout.radius][p];
-    const double gap = radius - b.place[Block::places][p];
-    const double overlap = gap < 0.0 ? 0.0 : gap;
+    const Vector n = {b.in[0][p], b.in[1][p], F.dimension == 3 ? b.in[2][p] : 0.0};
+    const double radius = b.in[layout.radius][p];
     Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, curvature_at<F>(b, p), radius);
-    contact<F>(b, p, k, reduced, n, overlap, scale);
+    if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], radius);
+    contact<F>(b, p, k, reduced, {n, 0.0, radius - b.distance[p]}, scale);
   }
 }
 

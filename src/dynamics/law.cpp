@@ -20,6 +20,16 @@ LawConstants constants(const input::Input& in, double youngs_modulus, double sha
           .reduced_mass = 0.0};
 }
 
+/// Mindlin's no-slip stiffness, 1/G* = sharing (2 - nu) / G with G = E / (2 (1 + nu)), and the torques' limits.
+void add_memory(const input::Input& in, double youngs_modulus, double sharing, double slip_mass, LawConstants& c) {
+  const double nu = in.particles.poisson_ratio;
+  const double modulus = youngs_modulus / (2.0 * sharing * (1.0 + nu) * (2.0 - nu));  // G*
+  c.shear_stiffness = 8.0 * modulus;
+  c.shear_damping = 2.0 * in.contact.damping_ratio * std::sqrt(c.shear_stiffness * slip_mass);
+  c.rolling_friction = in.contact.rolling_friction;
+  c.twisting_friction = in.contact.twisting_friction;
+}
+
 double slip_rate(const input::Contact& contact, double time_step) {
   switch (contact.regularisation) {
     case input::Regularisation::stop:
@@ -46,6 +56,10 @@ Law make_law(const scene::Scene& scene, const scene::Stage& stage) {
           .slip_rate = slip_rate(in.contact, stage.time_step),
           .slip_mass = rolls ? 2.0 / 7.0 : 1.0,
           .lowest_force = in.contact.tension_cutoff ? 0.0 : -std::numeric_limits<double>::infinity()};
+  if (scene.features.memory) {
+    add_memory(in, stage.youngs_modulus, 2.0, law.slip_mass, law.pair);
+    add_memory(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, law.slip_mass, law.wall);
+  }
   if (scene.sizes.equal()) {
     const double k = 1.0 / scene.sizes.largest();
     law.wall.reduced_radius = scene.sizes.largest();

@@ -11,6 +11,11 @@ struct LawConstants {
   double friction;        ///< mu_d [-]
   double reduced_radius;  ///< r* [m], equal radii only; graded contacts compute theirs
   double reduced_mass;    ///< m* [kg], equal radii only
+  // Friction with memory only.
+  double shear_stiffness = 0.0;    ///< 8 G* [Pa]: k_t = shear_stiffness * a, a = sqrt(r* delta)
+  double shear_damping = 0.0;      ///< eta_t = shear_damping * sqrt(m* a): the damping ratio xi on k_t and m_t
+  double rolling_friction = 0.0;   ///< mu_r [-]: the torque against rolling is at most mu_r |f_n| r*
+  double twisting_friction = 0.0;  ///< mu_t [-]
 };
 
 /// What the whole scene's contacts share.

@@ -27,6 +27,8 @@ StepData part_of(StepData whole, const neighbor::Leg& before, const neighbor::Le
   whole.wall_particle += before.walls_end;
   whole.wall += before.walls_end;
   whole.walls = leg.walls_end - before.walls_end;
+  if (whole.stored_pairs.values != nullptr) whole.stored_pairs.values += before.pairs_end;
+  if (whole.stored_walls.values != nullptr) whole.stored_walls.values += before.walls_end;
   return whole;
 }
 
@@ -139,7 +141,7 @@ void Stepper::fit_ring(const particles::Store& store, const neighbor::Neighborho
   ring_mask_ = slots - 1;
 }
 
-StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& neighborhood) {
+StepData Stepper::data(particles::Store& store, neighbor::Neighborhood& neighborhood) {
   const neighbor::PairList& pairs = neighborhood.pairs();
   const neighbor::WallList& walls = neighborhood.walls();
   return StepData{
@@ -163,6 +165,8 @@ StepData Stepper::data(particles::Store& store, const neighbor::Neighborhood& ne
       .fluid_velocity = scene_->in.drag.fluid_velocity,
       .size = scene_->box.size,
       .periodic = scene_->box.periodic,
+      .stored_pairs = {neighborhood.memory().of_pairs(), std::ssize(pairs.first)},
+      .stored_walls = {neighborhood.memory().of_walls(), std::ssize(walls.particle)},
   };
 }
 

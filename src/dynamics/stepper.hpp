@@ -55,7 +55,7 @@ class Stepper {
   void advance_one(particles::Store& store, neighbor::Neighborhood& neighborhood);
   StepReport sweep(particles::Store& store, neighbor::Neighborhood& neighborhood);
   void fit_ring(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
-  [[nodiscard]] StepData data(particles::Store& store, const neighbor::Neighborhood& neighborhood);
+  [[nodiscard]] StepData data(particles::Store& store, neighbor::Neighborhood& neighborhood);
   void add_near_forces(const particles::Store& store, const neighbor::Neighborhood& neighborhood);
   [[nodiscard]] neighbor::Alarm alarm_of_step(const particles::Store& store) const;
   [[nodiscard]] Inspected inspected(const particles::Store& store, const neighbor::Neighborhood& neighborhood) const;

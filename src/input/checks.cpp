@@ -272,11 +272,32 @@ void check_features(const Case& scene) {
   }
 }
 
+void check_memory(const Case& scene) {
+  const Input& in = scene.in;
+  const bool rolling = in.contact.rolling_friction > 0.0;
+  const bool twisting = in.contact.twisting_friction > 0.0;
+  if (twisting && in.container.dimension == 2) {
+    scene.refuse("contact.twisting_friction", "discs spin in their plane and never about a normal; remove it");
+  }
+  if ((rolling || twisting) && !in.dynamics.rotation) {
+    scene.refuse(rolling ? "contact.rolling_friction" : "contact.twisting_friction",
+                 "particles without rotation cannot roll; remove it, or set dynamics.rotation = true");
+  }
+  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  if ((rolling || twisting) && !rough) {
+    scene.refuse("contact.friction", "resistance to rolling wants friction, too; give it, or remove the resistance");
+  }
+}
+
 void check_theta(const Case& scene) {
   const double theta = scene.in.dynamics.theta;
   if (theta == 0.0) return;
   if (theta < 0.5) {
     scene.refuse("dynamics.theta", fmt::format("{:g} is neither explicit nor stable; give 0, or 0.5 to 1", theta));
+  }
+  if (scene.in.contact.tangential == Tangential::mindlin) {
+    scene.refuse("contact.tangential",
+                 "implicit steps have no friction with memory; use \"sliding\", or dynamics.theta = 0");
   }
   if (scene.in.contact.regularisation == Regularisation::none) {
     scene.refuse("contact.regularisation",
@@ -307,6 +328,7 @@ void check(const Input& in, const Document& document) {
   check_time(scene);
   check_stages(scene);
   check_features(scene);
+  check_memory(scene);
   check_theta(scene);
   check_checkpoint(scene);
 }

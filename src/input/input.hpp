@@ -17,6 +17,7 @@ enum class Weighting { number, mass };
 enum class Interpolation { log, linear };
 enum class HeightRule { surface, highest };
 enum class FrictionVelocity { contact, centre };
+enum class Tangential { sliding, mindlin };
 enum class Regularisation { stop, viscous, none };
 enum class WallStiffness { rigid, material };
 enum class StopRule { duration, settled };
@@ -76,6 +77,9 @@ struct Contact {
   double damping_ratio = 0.0;  ///< [-] xi
   double friction = 0.0;       ///< [-] mu_d
   double wall_friction = 0.0;  ///< [-]
+  Tangential tangential = Tangential::sliding;
+  double rolling_friction = 0.0;   ///< [-] mu_r
+  double twisting_friction = 0.0;  ///< [-] mu_t
   FrictionVelocity friction_velocity = FrictionVelocity::contact;
   Regularisation regularisation = Regularisation::stop;
   double slip_time = 0.0;  ///< [s] viscous only

@@ -100,6 +100,9 @@ constexpr Condition bounded{"distribution = \"gaussian\", \"uniform\", \"lognorm
                                      is(in, SizeDistribution::lognormal) || is(in, SizeDistribution::weibull);
                             }};
 constexpr Condition graded{"distributions other than \"equal\"", [](const Input& in) { return !equal.holds(in); }};
+constexpr Condition mindlin{"tangential = \"mindlin\"",
+                            [](const Input& in) { return in.contact.tangential == Tangential::mindlin; }};
+constexpr Condition sliding{"tangential = \"sliding\"", [](const Input& in) { return !mindlin.holds(in); }};
 constexpr Condition viscous{"regularisation = \"viscous\"",
                             [](const Input& in) { return in.contact.regularisation == Regularisation::viscous; }};
 constexpr Condition settled{"stop = \"settled\"",
@@ -225,10 +228,16 @@ std::vector<Key> force_keys() {
          "Coefficient mu_d of sliding friction between particles."),
     real("contact.wall_friction", at(contact, &Contact::wall_friction), plain, at_least(0), "=contact.friction",
          "The same between particles and walls."),
+    word("contact.tangential", at(contact, &Contact::tangential), "sliding",
+         "Friction: \"mindlin\" remembers the tangential displacement of each contact and holds at rest; \"sliding\", the paper's, has no memory."),
+    when(mindlin, real("contact.rolling_friction", at(contact, &Contact::rolling_friction), plain, at_least(0), "0.0",
+         "Coefficient mu_r of the resistance to rolling: the torque is at most mu_r f_n r*. 0: none.")),
+    when(mindlin, real("contact.twisting_friction", at(contact, &Contact::twisting_friction), plain, at_least(0), "0.0",
+         "Coefficient mu_t of the resistance to spinning about the normal: the torque is at most mu_t f_n r*. 0: none.")),
     word("contact.friction_velocity", at(contact, &Contact::friction_velocity), "contact",
          "Slip is measured at the contact point, spin included, or between the centres, as printed in the paper's eq. (14)."),
-    word("contact.regularisation", at(contact, &Contact::regularisation), "stop",
-         "Friction at small slip: \"stop\" ends the slip within one step; \"viscous\" within slip_time; \"none\" is the literal law."),
+    when(sliding, word("contact.regularisation", at(contact, &Contact::regularisation), "stop",
+         "Friction at small slip: \"stop\" ends the slip within one step; \"viscous\" within slip_time; \"none\" is the literal law.")),
     when(viscous, real("contact.slip_time", at(contact, &Contact::slip_time), time, above(0), mandatory,
          "Time in which friction may end a slip; at least two time steps.")),
     word("contact.tension_cutoff", at(contact, &Contact::tension_cutoff), "true",

@@ -20,7 +20,7 @@ double squeeze(const RadiusRange& radii) {
 double chatter(const Contact& contact) {
   constexpr double smooth = 0.2;
   const double friction = std::max(contact.friction, contact.wall_friction);
-  const bool stops = contact.regularisation == Regularisation::stop;
+  const bool stops = contact.tangential == Tangential::sliding && contact.regularisation == Regularisation::stop;
   return stops && friction > smooth ? std::sqrt(std::sqrt(friction / smooth)) : 1.0;
 }
 

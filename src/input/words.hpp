@@ -24,6 +24,8 @@ inline constexpr std::array<std::string_view, 2> words_of<HeightRule>{"surface",
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<FrictionVelocity>{"contact", "centre"};
 template <>
+inline constexpr std::array<std::string_view, 2> words_of<Tangential>{"sliding", "mindlin"};
+template <>
 inline constexpr std::array<std::string_view, 3> words_of<Regularisation>{"stop", "viscous", "none"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<WallStiffness>{"rigid", "material"};

@@ -25,7 +25,7 @@ void stop(const particles::Layout& layout, double* record) {
 
 }  // namespace
 
-void Frozen::take(particles::Store& from, GlobalId below) {
+void Frozen::take(particles::Store& from, GlobalId below, Baggage* contacts) {
   store_.set_ghosts(0);
   std::vector<LocalIndex> moving;
   for (LocalIndex i = 0; i < from.owned(); ++i) {
@@ -36,16 +36,21 @@ void Frozen::take(particles::Store& from, GlobalId below) {
     }
     store_.add_record(id, from.record(i));
     stop(store_.layout(), store_.record(store_.owned() - 1));
+    if (contacts != nullptr) baggage_.append(*contacts, i, [id](GlobalId partner) { return partner < id; });
   }
   from.keep(moving);
+  if (contacts != nullptr) contacts->keep(moving);
   in_use_ = true;
 }
 
-void Frozen::give_back(particles::Store& to) {
+void Frozen::give_back(particles::Store& to, Baggage* contacts) {
   to.set_ghosts(0);
+  if (contacts != nullptr) contacts->fit(to.owned());
   for (LocalIndex i = 0; i < store_.owned(); ++i) {
     to.add_record(store_.ids()[static_cast<std::size_t>(i)], store_.record(i));
+    if (contacts != nullptr) contacts->append(baggage_, i, [](GlobalId) { return true; });
   }
+  baggage_.clear();
   store_ = particles::Store(store_.layout());
   start_ = {};
   in_use_ = false;
@@ -71,6 +76,7 @@ void Frozen::sort(const scene::Ownership& ownership, const LocalColumns& columns
   std::ranges::sort(places, std::less<>{});
   std::vector<LocalIndex> order(places.size());
   std::ranges::transform(places, order.begin(), &Place::slot);
+  if (!baggage_.empty()) baggage_.permute(order);
   store_.permute(order);
 }
 

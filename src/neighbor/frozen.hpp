@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "neighbor/baggage.hpp"
 #include "neighbor/cells.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
@@ -15,18 +16,24 @@ namespace packmpi::neighbor {
 /// refreshed. Which particles are frozen is a matter of their ids, so nothing here depends on the ranks.
 class Frozen {
  public:
-  Frozen(const comm::Comm& comm, const particles::Layout& layout) : comm_(&comm), store_(layout) {}
+  /// `doubles` stored for each contact.
+  Frozen(const comm::Comm& comm, const particles::Layout& layout, int doubles)
+      : comm_(&comm), store_(layout), baggage_(doubles) {}
 
   /// Local, but on every rank alike. Moves the owned particles of `from` with ids below `below` here and sets their
-  /// velocities and spins to zero. Drops the ghosts of `from`. Then arrange().
-  void take(particles::Store& from, GlobalId below);
+  /// velocities and spins to zero. Drops the ghosts of `from`. Then arrange(). `contacts` (null: none are remembered)
+  /// are those of the particles of `from`: what both ends of are frozen comes along, and is kept until give_back.
+  void take(particles::Store& from, GlobalId below, Baggage* contacts);
   /// Local, but on every rank alike. Moves all of them back, at rest; drops the ghosts of `to`.
-  void give_back(particles::Store& to);
+  void give_back(particles::Store& to, Baggage* contacts);
   /// Is there anything, on any rank? The same on every rank.
   [[nodiscard]] bool in_use() const noexcept { return in_use_; }
   /// Frozen particles of this rank: owned in the order of columns, then the copies as ghosts.
   [[nodiscard]] const particles::Store& store() const noexcept { return store_; }
   [[nodiscard]] particles::Store& store() noexcept { return store_; }
+  /// Contacts of the frozen among themselves and with walls.
+  [[nodiscard]] const Baggage& baggage() const noexcept { return baggage_; }
+  [[nodiscard]] Baggage& baggage() noexcept { return baggage_; }
 
   /// Collective. Once the particles are with the owners of their columns: sorts them and gets the copies of those
   /// within `range` [m] of our columns. Cost: O(frozen particles of the rank); once for each freeze or change of
@@ -47,6 +54,7 @@ class Frozen {
 
   const comm::Comm* comm_;
   particles::Store store_;
+  Baggage baggage_;
   std::vector<LocalIndex> start_;  // slots of local column c: start_[c] .. start_[c + 1), ascending in height
   bool in_use_ = false;
 };

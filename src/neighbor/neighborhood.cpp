@@ -9,6 +9,7 @@
 #include "base/grow.hpp"
 #include "base/timer.hpp"
 #include "scene/limits.hpp"
+#include "scene/pair_channels.hpp"
 
 namespace packmpi::neighbor {
 namespace {
@@ -40,9 +41,10 @@ Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, co
       scene_(&scene),
       ownership_(&ownership),
       columns_(ownership, comm.rank()),
-      frozen_(comm, scene.features.layout()),
+      frozen_(comm, scene.features.layout(), scene::stored_doubles(scene.features)),
       halo_(comm, scene.features.layout()),
-      size_classes_(scene, ownership) {}
+      size_classes_(scene, ownership),
+      memory_(scene.features) {}
 
 void Neighborhood::ownership_changed() {
   columns_ = LocalColumns(*ownership_, comm_->rank());
@@ -50,12 +52,16 @@ void Neighborhood::ownership_changed() {
 }
 
 void Neighborhood::freeze(particles::Store& store, GlobalId below) {
-  frozen_.take(store, below);
+  memory_.pick_up(store, pairs_, walls_);
+  frozen_.take(store, below, memory_.in_use() ? &memory_.baggage() : nullptr);
   frozen_arranged_ = false;
+  one_sided_ = memory_.in_use();
 }
 
 void Neighborhood::release(particles::Store& store) {
-  frozen_.give_back(store);
+  memory_.pick_up(store, pairs_, walls_);
+  frozen_.give_back(store, memory_.in_use() ? &memory_.baggage() : nullptr);
+  one_sided_ = memory_.in_use();
   frozen_cells_ = {};
   frozen_arranged_ = true;
 }
@@ -63,7 +69,9 @@ void Neighborhood::release(particles::Store& store) {
 void Neighborhood::rebuild(particles::Store& store) {
   const Stopwatch watch;
   store.set_ghosts(0);
-  migrate(store, comm::Purpose::migration);
+  const std::vector<Rank> destination = destinations(store);
+  memory_.pick_up(store, pairs_, walls_, destination);
+  migrate(store, destination, memory_.in_use() ? &memory_.baggage() : nullptr, comm::Purpose::migration);
   sort_owned(store);
   halo_.plan(store, choose_sends(store));
   sort_ghosts(store);
@@ -77,6 +85,8 @@ void Neighborhood::rebuild(particles::Store& store) {
   }
   if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
   build_walls(store);
+  memory_.lay_down(store, pairs_, walls_);
+  if (one_sided_) complete_borders(store);
   sweep_ = make_sweep(store.owned(), pairs_, walls_, halo_);
   drift_ = 0.0;
   ++effort_.rebuilds;
@@ -146,13 +156,25 @@ bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const 
   return box.beyond(x) < store.radius(i) && z < highest * (box.height() + scene_->in.layers.thickness);
 }
 
-void Neighborhood::migrate(particles::Store& store, comm::Purpose purpose) const {
+// Where each owned particle belongs now; empty on a single rank.
+std::vector<Rank> Neighborhood::destinations(const particles::Store& store) const {
+  std::vector<Rank> ranks;
+  if (comm_->size() == 1) return ranks;
+  ranks.reserve(static_cast<std::size_t>(store.owned()));
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    ranks.push_back(ownership_->owner(ownership_->grid().column(store.position(i))));
+  }
+  return ranks;
+}
+
+void Neighborhood::migrate(particles::Store& store, std::span<const Rank> destination, Baggage* baggage,
+                           comm::Purpose purpose) const {
   if (comm_->size() == 1) return;
   const std::size_t record = store.layout().record_bytes();
   std::vector<comm::Parcel> outgoing;
   std::vector<LocalIndex> staying;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const Rank owner = ownership_->owner(ownership_->grid().column(store.position(i)));
+    const Rank owner = destination[static_cast<std::size_t>(i)];
     if (owner == comm_->rank()) {
       staying.push_back(i);
       continue;
@@ -163,18 +185,68 @@ void Neighborhood::migrate(particles::Store& store, comm::Purpose purpose) const
     const auto* body = reinterpret_cast<const std::byte*>(store.record(i));
     parcel->bytes.insert(parcel->bytes.end(), id, id + sizeof(GlobalId));
     parcel->bytes.insert(parcel->bytes.end(), body, body + record);
+    if (baggage != nullptr) baggage->write(i, parcel->bytes);
   }
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), purpose);
+  if (baggage != nullptr) baggage->keep(staying);
   if (staying.size() < static_cast<std::size_t>(store.owned())) store.keep(staying);
   std::vector<double> body(static_cast<std::size_t>(store.layout().stride));
   for (const comm::Parcel& parcel : incoming) {
-    for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(GlobalId) + record) {
+    for (std::size_t at = 0; at < parcel.bytes.size();) {
       GlobalId id = 0;
       std::memcpy(&id, parcel.bytes.data() + at, sizeof id);
       std::memcpy(body.data(), parcel.bytes.data() + at + sizeof id, record);
       store.add_record(id, body.data());
+      at += sizeof id + record;
+      if (baggage != nullptr) at += baggage->read(std::span(parcel.bytes).subspan(at));
     }
   }
+}
+
+// Collective. Where a contact had been at one of its owners only, the other gets its copy.
+void Neighborhood::complete_borders(const particles::Store& store) {
+  one_sided_ = false;
+  if (comm_->size() == 1) return;
+  std::vector<comm::Parcel> outgoing;
+  const auto put = [](std::vector<std::byte>& out, const void* from, std::size_t bytes) {
+    const auto* begin = static_cast<const std::byte*>(from);
+    out.insert(out.end(), begin, begin + bytes);
+  };
+  memory_.each_border(store, pairs_, store.owned() + halo_.ghosts(),
+                      [&](LocalIndex ghost, GlobalId theirs, GlobalId mine, std::span<const double> values) {
+                        const Rank owner = ownership_->owner(ownership_->grid().column(store.position(ghost)));
+                        auto parcel = std::ranges::find(outgoing, owner, &comm::Parcel::rank);
+                        if (parcel == outgoing.end()) parcel = outgoing.insert(outgoing.end(), comm::Parcel{owner, {}});
+                        put(parcel->bytes, &theirs, sizeof theirs);
+                        put(parcel->bytes, &mine, sizeof mine);
+                        put(parcel->bytes, values.data(), values.size_bytes());
+                      });
+  const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), comm::Purpose::migration);
+  std::vector<std::pair<GlobalId, LocalIndex>> slots;
+  for (LocalIndex i = 0; i < store.owned(); ++i) slots.emplace_back(store.ids()[static_cast<std::size_t>(i)], i);
+  std::ranges::sort(slots);
+  std::vector<double> values(memory_.doubles());
+  const std::size_t each = 2 * sizeof(GlobalId) + values.size() * sizeof(double);
+  for (const comm::Parcel& parcel : incoming) {
+    for (std::size_t at = 0; at < parcel.bytes.size(); at += each) {
+      std::array<GlobalId, 2> ids{};
+      std::memcpy(ids.data(), parcel.bytes.data() + at, sizeof ids);
+      std::memcpy(values.data(), parcel.bytes.data() + at + sizeof ids, values.size() * sizeof(double));
+      const auto mine = std::ranges::lower_bound(slots, ids[0], {}, &std::pair<GlobalId, LocalIndex>::first);
+      memory_.set_border(store, pairs_, mine->second, ids[1], values.data());
+    }
+  }
+}
+
+void Neighborhood::each_history(const particles::Store& store,
+                                const std::function<void(const ContactHistory&)>& see) const {
+  memory_.each(store, pairs_, walls_, see);
+  memory_.each(frozen_.store(), frozen_.baggage(), see);
+}
+
+void Neighborhood::give(const particles::Store& store, std::span<const ContactHistory> histories) {
+  memory_.give(store, histories);
+  one_sided_ = memory_.in_use();
 }
 
 void Neighborhood::sort_owned(particles::Store& store) {
@@ -204,6 +276,7 @@ void Neighborhood::sort_owned(particles::Store& store) {
   for (std::size_t i = 0; i < owned; ++i) {
     order[static_cast<std::size_t>(next[static_cast<std::size_t>(cell[i])]++)] = static_cast<LocalIndex>(i);
   }
+  if (memory_.in_use()) memory_.baggage().permute(order);
   store.permute(order);
 }
 
@@ -251,7 +324,8 @@ void Neighborhood::add_frozen(particles::Store& store) {
   const double range = scene_->column_width() * (1.0 + 1e-12);
   if (!frozen_arranged_) {
     frozen_.store().set_ghosts(0);
-    migrate(frozen_.store(), comm::Purpose::frozen);
+    migrate(frozen_.store(), destinations(frozen_.store()), memory_.in_use() ? &frozen_.baggage() : nullptr,
+            comm::Purpose::frozen);
     frozen_.arrange(*ownership_, columns_, range);
     frozen_arranged_ = true;
   }
@@ -326,6 +400,7 @@ std::size_t Neighborhood::bytes() const noexcept {
   for (const PairList* list : {&pairs_, &near_pairs_}) {
     total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);
   }
+  total += memory_.bytes();
   return total + walls_.particle.capacity() * (sizeof(LocalIndex) + sizeof(Wall));
 }
 

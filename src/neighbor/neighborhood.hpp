@@ -6,6 +6,7 @@
 
 #include "comm/comm.hpp"
 #include "neighbor/cells.hpp"
+#include "neighbor/contact_memory.hpp"
 #include "neighbor/frozen.hpp"
 #include "neighbor/halo.hpp"
 #include "neighbor/lists.hpp"
@@ -75,6 +76,17 @@ class Neighborhood {
   [[nodiscard]] const PairList& near_pairs() const noexcept { return near_pairs_; }  ///< near field; empty when off
   [[nodiscard]] const WallList& walls() const noexcept { return walls_; }
   [[nodiscard]] const Halo& halo() const noexcept { return halo_; }
+
+  /// What the contacts remember, beside pairs() and walls(); a step replaces it.
+  [[nodiscard]] ContactMemory& memory() noexcept { return memory_; }
+  [[nodiscard]] const ContactMemory& memory() const noexcept { return memory_; }
+  /// Calls see() once on one rank for each contact that remembers something, frozen ones too: on the owner of
+  /// ContactHistory::holder(). In no particular order. Local.
+  void each_history(const particles::Store& store, const std::function<void(const ContactHistory&)>& see) const;
+  /// Every rank alike, without messages. Puts back what each_history() told, wherever the particles are now: each rank
+  /// gives what the holders in its store have (the others are passed over). Before freeze() and rebuild(), after which
+  /// all ranks have their copies.
+  void give(const particles::Store& store, std::span<const ContactHistory> histories);
   /// Pairs of particles looked at for the contact lists in the last rebuild.
   [[nodiscard]] std::int64_t candidates() const noexcept { return candidates_; }
   [[nodiscard]] std::int64_t rebuilds() const noexcept { return effort_.rebuilds; }
@@ -85,9 +97,12 @@ class Neighborhood {
   [[nodiscard]] std::vector<std::int64_t> column_counts(const particles::Store& store) const;
 
  private:
-  void migrate(particles::Store& store, comm::Purpose purpose) const;  // collective
-  void begin_missing(const particles::Store& store);                   // collective
-  void meet(std::array<double, 2>& shared);                            // collective: the reduction of a step
+  [[nodiscard]] std::vector<Rank> destinations(const particles::Store& store) const;
+  void migrate(particles::Store& store, std::span<const Rank> destination, Baggage* baggage,
+               comm::Purpose purpose) const;  // collective
+  void complete_borders(const particles::Store& store);
+  void begin_missing(const particles::Store& store);  // collective
+  void meet(std::array<double, 2>& shared);           // collective: the reduction of a step
   void sort_owned(particles::Store& store);
   [[nodiscard]] std::vector<Sends> choose_sends(const particles::Store& store) const;
   void sort_ghosts(particles::Store& store);
@@ -113,6 +128,8 @@ class Neighborhood {
   SizeClasses size_classes_;  // used if the scene has more than one
   PairList pairs_, near_pairs_;
   WallList walls_;
+  ContactMemory memory_;
+  bool one_sided_ = false;  // histories of border pairs may be at one of their owners only, on some rank
   std::vector<Leg> sweep_;
   // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.
   std::array<std::vector<double>, 3> x_;

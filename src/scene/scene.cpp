@@ -97,6 +97,8 @@ Features features_of(const input::Input& in) {
   f.dimension = in.container.dimension;
   f.rotation = in.dynamics.rotation;
   f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  f.memory = f.friction && in.contact.tangential == input::Tangential::mindlin;
+  f.rolling = f.memory && (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0);
   f.drag = in.drag.coefficient > 0.0;
   f.near_field = in.near_field.has_value();
   f.graded = in.particles.radius.distribution != input::SizeDistribution::equal;

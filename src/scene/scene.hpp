@@ -5,26 +5,10 @@
 #include "geometry/columns.hpp"
 #include "geometry/container.hpp"
 #include "input/input.hpp"
-#include "particles/layout.hpp"
+#include "scene/features.hpp"
 #include "scene/sizes.hpp"
 
 namespace packmpi::scene {
-
-/// Which parts of the model the scene uses; picks the compiled kernel and the record layout.
-struct Features {
-  int dimension = 3;
-  bool rotation = true;
-  bool friction = true;  ///< mu > 0 at particles or walls
-  bool drag = true;      ///< coefficient > 0
-  bool near_field = false;
-  bool graded = false;    ///< radii differ
-  bool periodic = false;  ///< any lateral axis
-  /// Classes of size for the neighbour search, each half as large as the one before; 1: radii are alike, one search
-  int size_levels = 1;
-
-  [[nodiscard]] constexpr particles::Layout layout() const { return particles::layout_of(dimension, rotation); }
-  friend constexpr bool operator==(const Features&, const Features&) = default;
-};
 
 /// How particles are integrated for a while.
 struct Stage {

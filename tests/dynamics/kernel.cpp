@@ -49,7 +49,7 @@ std::vector<std::string> architectures() {
 
 std::vector<Features> all_features() {
   std::vector<Features> all;
-  for (int bits = 0; bits < 64; ++bits) {
+  for (int bits = 0; bits < 256; ++bits) {
     Features f;
     f.dimension = (bits & 1) != 0 ? 3 : 2;
     f.rotation = (bits & 2) != 0;
@@ -57,7 +57,10 @@ std::vector<Features> all_features() {
     f.drag = (bits & 8) != 0;
     f.graded = (bits & 16) != 0;
     f.periodic = (bits & 32) != 0;
-    all.push_back(f);
+    f.memory = (bits & 64) != 0;
+    f.rolling = (bits & 128) != 0;
+    const bool whole = (!f.memory || f.friction) && (!f.rolling || (f.memory && f.rotation));
+    if (whole) all.push_back(f);
   }
   return all;
 }
@@ -69,6 +72,8 @@ std::string words(const Features& f) {
   if (f.drag) text += " drag";
   if (f.graded) text += " graded";
   if (f.periodic) text += " periodic";
+  if (f.memory) text += " memory";
+  if (f.rolling) text += " rolling";
   return text;
 }
 
@@ -110,6 +115,8 @@ void expect_equal_steps(const Features& features, const CloudPlan& plan, int ste
     EXPECT_TRUE(same_bits(got.max_force, expected.max_force)) << got.max_force << ' ' << expected.max_force;
     EXPECT_TRUE(got.in_range);
     ASSERT_EQ(first_difference(fast, slow), -1) << "at step " << s;
+    ASSERT_EQ(fast.pair_stored, slow.pair_stored) << "at step " << s;
+    ASSERT_EQ(fast.wall_stored, slow.wall_stored) << "at step " << s;
     EXPECT_TRUE(fast.ring_is_clear());
   }
 }
@@ -146,6 +153,8 @@ StepReport step_in_parts(const dynamics::Kernel kernel, Cloud& cloud, support::D
     part.end = cut;
     part.first = cloud.pairs.first.data() + pairs_done;
     part.second = cloud.pairs.second.data() + pairs_done;
+    part.stored_pairs.values = cloud.pair_stored.data() + pairs_done;
+    part.stored_walls.values = cloud.wall_stored.data() + walls_done;
     for (part.pairs = 0; pairs_done < pairs && part.first[part.pairs] < cut; ++pairs_done) ++part.pairs;
     part.wall_particle = cloud.walls.particle.data() + walls_done;
     part.wall = cloud.walls.wall.data() + walls_done;
@@ -169,6 +178,8 @@ TEST(Kernel, PartsMakeTheSameStep) {
       EXPECT_LE(got.max_speed, expected.max_speed);
       EXPECT_GE(got.max_speed, expected.max_speed / std::sqrt(3.0));  // both are bounds, good to that
       ASSERT_EQ(first_difference(whole, cut), -1);
+      ASSERT_EQ(whole.pair_stored, cut.pair_stored);
+      ASSERT_EQ(whole.wall_stored, cut.wall_stored);
       EXPECT_TRUE(cut.ring_is_clear());
     }
   }
@@ -215,6 +226,10 @@ TEST(Kernel, NumberingDoesNotMatter) {
     for (LocalIndex i = 0; i < one.plan.owned; ++i) {
       const auto old = static_cast<LocalIndex>(two.ids[static_cast<std::size_t>(i)]);
       ASSERT_EQ(std::memcmp(two.record(i), one.record(old), bytes), 0) << "particle " << old;
+    }
+    for (std::size_t p = 0; features.memory && p < one.pairs.first.size(); ++p) {
+      const GlobalId a = one.pairs.first[p], b = one.pairs.second[p];  // ids are slots there
+      ASSERT_EQ(one.stored(a, b), two.stored(a, b)) << "particles " << a << ' ' << b;
     }
   }
 }

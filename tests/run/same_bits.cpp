@@ -132,6 +132,38 @@ TEST(SameBitsWithAWindow, OfTwoGradedPeriodicLayers) {
   expect_one_pack(window_scene(3, true, true, false, 2), {1, 2, 4});
 }
 
+// Friction with memory, rolling and twisting: histories cross ranks, freeze, and come back.
+input::Input remembering(input::Input in, double rolling) {
+  in.contact.tangential = input::Tangential::mindlin;
+  in.contact.rolling_friction = rolling;
+  in.contact.twisting_friction = in.container.dimension == 3 ? rolling : 0.0;
+  return in;
+}
+
+TEST(SameBitsWithMemory, OfEqualSpheresBetweenWalls) {
+  expect_one_pack(remembering(scene_of(3, false, false, false), 0.0), {1, 2, 3, 4, 6, 8});
+}
+
+TEST(SameBitsWithMemory, OfGradedPeriodicSpheresThatRollAndTwist) {
+  expect_one_pack(remembering(scene_of(3, true, true, false), 0.1), {1, 2, 3, 4, 6, 8});
+}
+
+TEST(SameBitsWithMemory, OfDiscs) {
+  expect_one_pack(remembering(scene_of(2, true, false, false), 0.1), {1, 3, 8});
+  expect_one_pack(remembering(scene_of(2, false, true, true), 0.0), {1, 3, 8});
+}
+
+TEST(SameBitsWithMemory, WithoutRotation) {
+  input::Input in = remembering(scene_of(3, false, true, false), 0.0);
+  in.dynamics.rotation = false;
+  expect_one_pack(in, {1, 2, 8});
+}
+
+TEST(SameBitsWithMemory, OfAWindowAndAFinalRelaxation) {
+  expect_one_pack(remembering(window_scene(3, false, false, false, 1), 0.0), {1, 3, 8});
+  expect_one_pack(remembering(window_scene(3, true, true, false, 2), 0.1), {1, 2, 4});
+}
+
 // Everything that shortens a run at once: soft layers in large steps, ended when they have settled.
 TEST(SameBitsWithAWindow, OfSoftLayersThatSettle) {
   input::Input in = window_scene(3, false, false, false, 1);

@@ -7,13 +7,14 @@
 #include <numeric>
 
 #include "geometry/container.hpp"
+#include "scene/pair_channels.hpp"
 
 namespace packmpi::support {
 namespace {
 
 constexpr double radius = 0.02;  // [m] of equal particles
 
-dynamics::Law random_law(Dice& dice) {
+dynamics::Law random_law(const scene::Features& features, Dice& dice) {
   dynamics::Law law{};
   const double modulus = 1e6;
   law.mass_factor = 3.0 / (4.0 * 3.141592653589793 * 1000.0);
@@ -24,6 +25,12 @@ dynamics::Law random_law(Dice& dice) {
   law.slip_rate = dice() < 0.7 ? 1e4 : 1e150;
   law.slip_mass = dice() < 0.7 ? 2.0 / 7.0 : 1.0;
   law.lowest_force = dice() < 0.7 ? 0.0 : -HUGE_VAL;
+  if (!features.memory) return law;
+  for (dynamics::LawConstants* c : {&law.pair, &law.wall}) {
+    c->shear_stiffness = 1.3 * c->stiffness;
+    c->shear_damping = 2.0 * 0.1 * std::sqrt(c->shear_stiffness * law.slip_mass);
+    if (features.rolling) c->rolling_friction = dice(0.0, 0.2), c->twisting_friction = dice(0.0, 0.1);
+  }
   return law;
 }
 
@@ -31,7 +38,7 @@ dynamics::Law random_law(Dice& dice) {
 
 Cloud::Cloud(const scene::Features& f, const CloudPlan& p) : features(f), plan(p) {
   Dice dice(plan.seed);
-  law = random_law(dice);
+  law = random_law(features, dice);
   drag = features.drag ? 0.05 : 0.0;
   if (features.periodic) periodic = {true, f.dimension == 3 && dice() < 0.5};
   if (features.periodic && f.dimension == 3 && dice() < 0.3) periodic = {false, true};
@@ -41,6 +48,7 @@ Cloud::Cloud(const scene::Features& f, const CloudPlan& p) : features(f), plan(p
   fill(dice);
   list(dice);
   make_ring(dice);
+  remember(dice);
 }
 
 void Cloud::fill(Dice& dice) {
@@ -141,7 +149,55 @@ Cloud Cloud::renumbered(std::uint64_t seed) const {
   other.walls = {};
   other.list(dice);
   other.make_ring(dice);
+  const auto doubles = static_cast<std::size_t>(scene::stored_doubles(features));
+  const auto signs = scene::stored_signs(features);
+  const auto fill = [&](std::vector<double>& values, std::size_t entries, std::size_t entry, GlobalId a, GlobalId b) {
+    const std::vector<double> old = stored(b < 0 ? a : std::min(a, b), b < 0 ? b : std::max(a, b));
+    for (std::size_t c = 0; c < doubles; ++c) {
+      values[c * entries + entry] = b >= 0 && a > b ? signs[c] * old[c] : old[c];
+    }
+  };
+  const auto id = [&](LocalIndex i) { return other.ids[static_cast<std::size_t>(i)]; };
+  other.pair_stored.assign(doubles * other.pairs.first.size(), 0.0);
+  other.wall_stored.assign(doubles * other.walls.particle.size(), 0.0);
+  for (std::size_t p = 0; p < other.pairs.first.size(); ++p) {
+    fill(other.pair_stored, other.pairs.first.size(), p, id(other.pairs.first[p]), id(other.pairs.second[p]));
+  }
+  for (std::size_t w = 0; w < other.walls.particle.size(); ++w) {
+    fill(other.wall_stored, other.walls.particle.size(), w, id(other.walls.particle[w]),
+         -1 - static_cast<GlobalId>(other.walls.wall[w]));
+  }
   return other;
+}
+
+// Of all listed contacts, some of them not touching: what a step must drop. Some slide, some stick.
+void Cloud::remember(Dice& dice) {
+  const auto doubles = static_cast<std::size_t>(scene::stored_doubles(features));
+  pair_stored.assign(doubles * pairs.first.size(), 0.0);
+  wall_stored.assign(doubles * walls.particle.size(), 0.0);
+  for (std::vector<double>* values : {&pair_stored, &wall_stored}) {
+    for (double& x : *values) x = dice() < 0.8 ? dice(-1.0, 1.0) * std::pow(10.0, dice(-7.0, -3.0)) : 0.0;
+  }
+}
+
+std::vector<double> Cloud::stored(GlobalId first, GlobalId second) const {
+  std::vector<double> values(static_cast<std::size_t>(scene::stored_doubles(features)), 0.0);
+  const auto signs = scene::stored_signs(features);
+  const auto id = [&](LocalIndex i) { return ids[static_cast<std::size_t>(i)]; };
+  const std::size_t entries = pairs.first.size();
+  for (std::size_t p = 0; p < entries; ++p) {
+    const GlobalId a = id(pairs.first[p]), b = id(pairs.second[p]);
+    if (std::min(a, b) != first || std::max(a, b) != second) continue;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      values[c] = (a < b ? 1.0 : signs[c]) * pair_stored[c * entries + p];
+    }
+  }
+  const std::size_t contacts = walls.particle.size();
+  for (std::size_t w = 0; w < contacts; ++w) {
+    if (id(walls.particle[w]) != first || -1 - static_cast<GlobalId>(walls.wall[w]) != second) continue;
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] = wall_stored[c * contacts + w];
+  }
+  return values;
 }
 
 dynamics::StepData Cloud::data() {
@@ -164,7 +220,9 @@ dynamics::StepData Cloud::data() {
           .drag = drag,
           .fluid_velocity = {0.1, -0.2, features.dimension == 3 ? 0.3 : 0.0},
           .size = size,
-          .periodic = periodic};
+          .periodic = periodic,
+          .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
+          .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }
 
 }  // namespace packmpi::support

@@ -42,6 +42,9 @@ struct Cloud {
   [[nodiscard]] Cloud renumbered(std::uint64_t seed) const;
   [[nodiscard]] dynamics::StepData data();
   [[nodiscard]] bool ring_is_clear() const;
+  /// What the pair has stored, oriented from the lower id, or of a wall, whose number is -1 - second. Zeros if not
+  /// listed.
+  [[nodiscard]] std::vector<double> stored(GlobalId first, GlobalId second) const;
   [[nodiscard]] const double* record(LocalIndex i) const {
     return records.data() + static_cast<std::ptrdiff_t>(i) * features.layout().stride;
   }
@@ -52,6 +55,7 @@ struct Cloud {
   std::vector<GlobalId> ids;
   neighbor::PairList pairs;
   neighbor::WallList walls;
+  std::vector<double> pair_stored, wall_stored;  // as dynamics::StoredVectors has them
   dynamics::Law law{};
   Vec3 size{};
   std::array<bool, 2> periodic{};
@@ -63,6 +67,7 @@ struct Cloud {
   void fill(Dice& dice);
   void list(Dice& dice);
   void make_ring(Dice& dice);
+  void remember(Dice& dice);
 };
 
 }  // namespace packmpi::support

@@ -2,9 +2,11 @@
 #pragma once
 #include <vector>
 
+#include "dynamics/contact_law.hpp"
 #include "dynamics/kernel.hpp"
 #include "dynamics/near_field.hpp"
 #include "particles/store.hpp"
+#include "scene/pair_channels.hpp"
 #include "scene/scene.hpp"
 
 namespace packmpi::support {
@@ -40,13 +42,28 @@ inline void add_friction(scene::Scene& s, double coefficient) {
   s.features.friction = true;
 }
 
+/// Friction that remembers, with resistance to rolling and twisting where they are not zero.
+inline void add_memory(scene::Scene& s, double friction, double rolling = 0.0, double twisting = 0.0) {
+  add_friction(s, friction);
+  s.in.contact.tangential = input::Tangential::mindlin;
+  s.in.contact.rolling_friction = rolling;
+  s.in.contact.twisting_friction = twisting;
+  s.features.memory = true;
+  s.features.rolling = rolling > 0.0 || twisting > 0.0;
+}
+
 class World {
  public:
   explicit World(const scene::Scene& scene)
       : scene_(scene),
         store_(scene.features.layout()),
         law_(dynamics::make_law(scene)),
-        kernel_(dynamics::select_kernel(scene.features)) {}
+        kernel_(dynamics::select_kernel(scene.features)) {
+    gravity_[static_cast<std::size_t>(scene_.box.vertical())] = -scene_.in.jamming.gravity;
+  }
+
+  /// [m/s2], in place of the scene's: a slope is a floor under turned gravity.
+  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
 
   void add(const Vec3& position, const Vec3& velocity, double radius = 0.0, const Vec3& omega = {}) {
     const double r = radius > 0.0 ? radius : scene_.sizes.largest();
@@ -70,6 +87,17 @@ class World {
   }
 
   [[nodiscard]] const particles::Store& store() const { return store_; }
+  [[nodiscard]] particles::Store& store() { return store_; }
+  /// Stored double c of the contact of two particles, listed in ascending order, or of a particle and the floor.
+  [[nodiscard]] double stored(std::size_t c, std::size_t pair = 0) const {
+    return pair_stored_.at(c * pairs_.first.size() + pair);
+  }
+  [[nodiscard]] dynamics::StoredView stored_pairs() const { return {pair_stored_.data(), std::ssize(pairs_.first)}; }
+  [[nodiscard]] dynamics::StoredView stored_walls() const { return {wall_stored_.data(), std::ssize(walls_.particle)}; }
+  [[nodiscard]] const dynamics::Law& law() const { return law_; }
+  [[nodiscard]] double stored_at_floor(std::size_t c, std::size_t particle = 0) const {
+    return wall_stored_.at(c * walls_.particle.size() + particle);
+  }
   [[nodiscard]] const scene::Scene& scene() const { return scene_; }
   [[nodiscard]] Vec3 position(LocalIndex i) const { return store_.position(i); }
   [[nodiscard]] Vec3 velocity(LocalIndex i) const { return store_.velocity(i); }
@@ -90,11 +118,12 @@ class World {
       walls_.wall.push_back(neighbor::Wall::floor);
     }
     pairs_.window = store_.owned();
+    const auto doubles = static_cast<std::size_t>(scene::stored_doubles(scene_.features));
+    pair_stored_.resize(doubles * pairs_.first.size());  // as zeros once all are added; kept from step to step
+    wall_stored_.resize(doubles * walls_.particle.size());
   }
 
   dynamics::StepData data() {
-    Vec3 gravity{};
-    gravity[static_cast<std::size_t>(scene_.box.vertical())] = -scene_.in.jamming.gravity;
     return {.records = store_.records(),
             .owned = store_.owned(),
             .begin = 0,
@@ -110,11 +139,13 @@ class World {
             .law = law_,
             .force_quantum = scene_.force_quantum,
             .time_step = scene_.time_step,
-            .gravity = gravity,
+            .gravity = gravity_,
             .drag = scene_.in.drag.coefficient,
             .fluid_velocity = scene_.in.drag.fluid_velocity,
             .size = scene_.box.size,
-            .periodic = scene_.box.periodic};
+            .periodic = scene_.box.periodic,
+            .stored_pairs = {pair_stored_.data(), std::ssize(pairs_.first)},
+            .stored_walls = {wall_stored_.data(), std::ssize(walls_.particle)}};
   }
 
   scene::Scene scene_;
@@ -123,7 +154,9 @@ class World {
   dynamics::Kernel kernel_;
   neighbor::PairList pairs_;
   neighbor::WallList walls_;
+  std::vector<double> pair_stored_, wall_stored_;
   std::vector<Slot> slots_;
+  Vec3 gravity_{};
   bool near_in_range_ = true;
 };
 

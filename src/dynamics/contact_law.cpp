@@ -1,0 +1,89 @@
+// The law's header is the kernels', in a namespace of this file.
+#define PACKMPI_KERNEL plain
+#include "dynamics/contact_law.hpp"
+
+#include "dynamics/kernel_contact.hpp"
+#include "geometry/container.hpp"
+
+namespace packmpi::dynamics {
+namespace {
+
+using plain::Meeting;
+using plain::Vector;
+using scene::Features;
+
+Vec3 array_of(const Vector& a) { return {a.x, a.y, a.z}; }
+Vector vector_of(const Vec3& a) { return {a[0], a[1], a[2]}; }
+
+template <Features F>
+ContactEffect resolve(const plain::Constants& c, Meeting at, const StoredView& stored, std::int64_t entry) {
+  double values[scene::most_stored_doubles] = {};
+  for (int k = 0; stored.values != nullptr && k < scene::stored_doubles(F); ++k) {
+    values[k] = stored.values[k * stored.entries + entry];
+  }
+  at.springs = plain::springs_of<F>(values);
+  const plain::Force f = F.dimension == 3 ? plain::contact_3d<F>(c, at) : plain::contact_2d<F>(c, at);
+  const double stiffness = c.shear_stiffness * plain::root(at.reduced.radius * at.overlap);
+  const plain::Springs& x = f.springs;  // in a step of no duration nothing but their planes has changed
+  const double energy = 0.5 * stiffness * (dot(x.slip, x.slip) + dot(x.roll, x.roll) + x.twist * x.twist);
+  return {array_of(f.force), array_of(f.torque), f.strength, F.memory ? energy : 0.0};
+}
+
+template <int Dimension>
+ContactEffect resolve(const Features& f, const plain::Constants& c, const Meeting& at, const StoredView& stored,
+                      std::int64_t entry) {
+  if (f.rolling)
+    return resolve<Features{.dimension = Dimension, .memory = true, .rolling = true}>(c, at, stored, entry);
+  if (f.memory) return resolve<Features{.dimension = Dimension, .memory = true}>(c, at, stored, entry);
+  return resolve<Features{.dimension = Dimension}>(c, at, stored, entry);
+}
+
+ContactEffect resolve(const scene::Scene& scene, const Law& law, const LawConstants& kind, const Meeting& at,
+                      const StoredView& stored, std::int64_t entry) {
+  const plain::Constants c = plain::constants_of(law, kind, 0.0);
+  return scene.box.dimension == 3 ? resolve<3>(scene.features, c, at, stored, entry)
+                                  : resolve<2>(scene.features, c, at, stored, entry);
+}
+
+}  // namespace
+
+ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                           LocalIndex j, const StoredView& stored, std::int64_t entry) {
+  const Vec3 d = geometry::separation(scene.box, store.position(i), store.position(j));
+  const double radii = store.radius(j) + store.radius(i);
+  const plain::Touch touch = plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
+  const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
+  const Vec3 vi = store.velocity(i), vj = store.velocity(j), wi = store.spin(i), wj = store.spin(j);
+  Meeting at{plain::reduced_of_pair(law.mass_factor, k, radii),
+             touch.normal,
+             touch.bend,
+             touch.gap < 0.0 ? 0.0 : touch.gap,
+             {},
+             {},
+             {},
+             {}};
+  at.v = {vj[0] - vi[0], vj[1] - vi[1], vj[2] - vi[2]};
+  at.s = sum(scaled(store.radius(j), vector_of(wj)), store.radius(i), vector_of(wi));
+  at.spin = {wj[0] - wi[0], wj[1] - wi[1], wj[2] - wi[2]};
+  return resolve(scene, law, law.pair, at, stored, entry);
+}
+
+ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                           neighbor::Wall wall, const StoredView& stored, std::int64_t entry) {
+  const geometry::Plane plane = scene.box.plane(wall);
+  const double r = store.radius(i);
+  const double distance = plane.distance(store.position(i));
+  const double k = store.record(i)[store.layout().curvature];
+  const Vector v = vector_of(store.velocity(i)), w = vector_of(store.spin(i));
+  const Meeting at{plain::reduced_of_wall(law.mass_factor, k, r),
+                   vector_of(plane.normal()),
+                   0.0,
+                   distance < r ? r - distance : 0.0,
+                   scaled(-1.0, v),
+                   scaled(r, w),
+                   scaled(-1.0, w),
+                   {}};
+  return resolve(scene, law, law.wall, at, stored, entry);
+}
+
+}  // namespace packmpi::dynamics

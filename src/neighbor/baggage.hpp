@@ -1,0 +1,79 @@
+/// What particles carry along of their contacts while there are no lists: from slot to slot and from rank to rank.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace packmpi::neighbor {
+
+/// For each owned particle of a store, in its slots, a list of (partner, stored doubles), oriented from the particle to
+/// the partner. The partner is the id of a particle, or -1 - the number of a wall. A contact of two particles is held
+/// at its higher id, and where they have different owners at the lower one, too. Local: no MPI.
+class Baggage {
+ public:
+  explicit Baggage(int doubles) : doubles_(static_cast<std::size_t>(doubles)) {}
+
+  struct Item {
+    GlobalId partner;
+    std::span<const double> values;
+  };
+
+  void clear();  ///< frees the memory
+  [[nodiscard]] bool empty() const noexcept { return partners_.empty(); }
+  /// Lists for `count` particles; those there are stay.
+  void fit(LocalIndex count) { head_.resize(static_cast<std::size_t>(count), none); }
+
+  /// Precondition: slot < the count of fit(). value c is signs[c] * values[c * step].
+  void add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs);
+  /// Appends a particle with the list of `slot` of another one, of which `wanted(partner)`.
+  template <class Wanted>
+  void append(const Baggage& from, LocalIndex slot, Wanted wanted);
+
+  /// As particles::Store does it.
+  void keep(std::span<const LocalIndex> kept);
+  void permute(std::span<const LocalIndex> order);
+
+  /// Calls see(Item) for each contact of `slot`.
+  template <class See>
+  void each(LocalIndex slot, See see) const;
+  /// The stored doubles of the contact of `slot` with `partner`; null if there is none.
+  [[nodiscard]] const double* find(LocalIndex slot, GlobalId partner) const noexcept;
+
+  /// The list of `slot` at the end of `out`, and read back from `in` as that of an appended particle; returns how many
+  /// bytes it took. Errors: none, the bytes are our own.
+  void write(LocalIndex slot, std::vector<std::byte>& out) const;
+  std::size_t read(std::span<const std::byte> in);
+
+ private:
+  static constexpr std::int32_t none = -1;
+  std::size_t doubles_;
+  std::vector<std::int32_t> head_;  // by slot, the first item
+  std::vector<std::int32_t> next_;  // by item
+  std::vector<GlobalId> partners_;
+  std::vector<double> values_;
+};
+
+template <class See>
+void Baggage::each(LocalIndex slot, See see) const {
+  if (static_cast<std::size_t>(slot) >= head_.size()) return;  // inserted since
+  for (std::int32_t k = head_[static_cast<std::size_t>(slot)]; k != none; k = next_[static_cast<std::size_t>(k)]) {
+    const auto at = static_cast<std::size_t>(k);
+    see(Item{partners_[at], std::span(values_).subspan(at * doubles_, doubles_)});
+  }
+}
+
+template <class Wanted>
+void Baggage::append(const Baggage& from, LocalIndex slot, Wanted wanted) {
+  head_.push_back(none);
+  const std::vector<double> as_they_are(doubles_, 1.0);
+  from.each(slot, [&](const Item& item) {
+    if (wanted(item.partner)) {
+      add(static_cast<LocalIndex>(head_.size()) - 1, item.partner, item.values.data(), 1, as_they_are.data());
+    }
+  });
+}
+
+}  // namespace packmpi::neighbor
