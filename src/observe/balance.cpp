@@ -3,11 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamics/contact_law.hpp"
 #include "dynamics/kernel.hpp"
 #include "dynamics/near_field.hpp"
 #include "geometry/volume.hpp"
-#include "observe/contact_force.hpp"
 #include "observe/measure.hpp"
+#include "observe/touch.hpp"
 
 namespace packmpi::observe {
 namespace {
@@ -58,13 +59,15 @@ void add_body_forces(const particles::Store& store, const scene::Scene& scene, S
 
 /// Each touching pair acts on both its ends that are owned here; its magnitude is counted once over all ranks.
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::PairList& pairs, GlobalId frozen_below, Sums& sums, std::vector<double>& magnitudes) {
+               const neighbor::Neighborhood& neighborhood, GlobalId frozen_below, Sums& sums,
+               std::vector<double>& magnitudes) {
+  const neighbor::PairList& pairs = neighborhood.pairs();
+  const dynamics::StoredView stored = dynamics::stored_pairs(neighborhood);
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
-    const Touch at = touch(store, scene.box, i, j);
-    if (!(at.overlap > 0.0)) continue;
-    const Vec3 force = pair_force(store, law, i, j, at);
+    if (!(touch(store, scene.box, i, j).overlap > 0.0)) continue;
+    const Vec3 force = dynamics::pair_contact(scene, law, store, i, j, stored, static_cast<std::int64_t>(p)).force;
     sums.add(i, force);
     if (j < store.owned()) sums.add(j, force, -1);
     if (is_counted_here(store, i, j, frozen_below)) magnitudes.push_back(length(force));
@@ -72,12 +75,14 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
 }
 
 void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::WallList& walls, Sums& sums, std::vector<double>& magnitudes) {
+               const neighbor::Neighborhood& neighborhood, Sums& sums, std::vector<double>& magnitudes) {
+  const neighbor::WallList& walls = neighborhood.walls();
+  const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
-    const double depth = wall_penetration(store, scene.box, i, walls.wall[w]);
-    if (!(depth > 0.0)) continue;
-    const Vec3 force = wall_force(store, scene.box, law, i, walls.wall[w], depth);
+    if (!(wall_penetration(store, scene.box, i, walls.wall[w]) > 0.0)) continue;
+    const auto entry = static_cast<std::int64_t>(w);
+    const Vec3 force = dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force;
     sums.add(i, force);
     magnitudes.push_back(length(force));
   }
@@ -94,8 +99,8 @@ double unbalanced_force(const comm::Comm& comm, const particles::Store& store, c
   }
   std::array<std::vector<double>, 2> terms;  // on particles, of contacts
   add_body_forces(store, scene, sums);
-  add_pairs(store, scene, law, neighborhood.pairs(), frozen_below, sums, terms[1]);
-  add_walls(store, scene, law, neighborhood.walls(), sums, terms[1]);
+  add_pairs(store, scene, law, neighborhood, frozen_below, sums, terms[1]);
+  add_walls(store, scene, law, neighborhood, sums, terms[1]);
   for (LocalIndex i = 0; i < store.owned(); ++i) terms[0].push_back(sums.magnitude(i));
   std::array<std::int64_t, 3> counts{std::ssize(terms[0]), std::ssize(terms[1]), in_range ? 0 : 1};
   comm.sum(counts);

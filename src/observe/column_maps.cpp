@@ -82,10 +82,11 @@ std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Sce
 }
 
 std::vector<ColumnValue> virials(const particles::Store& store, const scene::Scene& scene,
-                                 const neighbor::PairList& pairs, const ColumnNumbering& columns) {
+                                 const neighbor::PairList& pairs, const dynamics::StoredView& stored,
+                                 const ColumnNumbering& columns) {
   const auto vertical = static_cast<std::size_t>(scene.box.vertical());
   std::vector<ColumnValue> terms;
-  each_contact(store, scene, pairs, [&](const ContactForce& contact) {
+  each_contact(store, scene, pairs, stored, [&](const ContactForce& contact) {
     if (!(contact.middle[vertical] < scene.box.height())) return;
     terms.push_back({columns.column(contact.middle), -contact.force[vertical] * contact.branch[vertical]});
   });
@@ -97,12 +98,12 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
 std::int64_t map_columns(const scene::Scene& scene) { return numbering(scene).size(); }
 
 ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                       const neighbor::PairList& pairs) {
+                       const neighbor::PairList& pairs, const dynamics::StoredView& stored) {
   const ColumnNumbering columns = numbering(scene);
   ColumnMaps maps{.counts = columns.counts,
                   .top = tops(comm, store, scene, columns),
                   .solid_fraction = sums(comm, columns, volumes(store, scene, columns)),
-                  .vertical_stress = sums(comm, columns, virials(store, scene, pairs, columns))};
+                  .vertical_stress = sums(comm, columns, virials(store, scene, pairs, stored, columns))};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
     maps.widths[axis] = columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
   }

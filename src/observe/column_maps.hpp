@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "dynamics/contact_law.hpp"
 #include "observe/measure.hpp"
 
 namespace packmpi::observe {
@@ -24,7 +25,7 @@ struct ColumnMaps {
 /// largest top is top(). Collective; sums are of whole numbers, so the maps are the same on any number of ranks. Cost:
 /// O(particles + pairs), about two steps; 16 bytes a contact for the while.
 [[nodiscard]] ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                                     const neighbor::PairList& pairs);
+                                     const neighbor::PairList& pairs, const dynamics::StoredView& stored = {});
 /// Columns of the maps of a scene. Local.
 [[nodiscard]] std::int64_t map_columns(const scene::Scene& scene);
 

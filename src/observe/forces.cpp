@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <tuple>
 
-#include "observe/contact_force.hpp"
+#include "dynamics/contact_law.hpp"
 #include "observe/measure.hpp"
+#include "observe/touch.hpp"
 
 namespace packmpi::observe {
 namespace {
@@ -20,27 +21,31 @@ Vec3 middle(const geometry::Container& box, const Vec3& from, const Vec3& branch
 }  // namespace
 
 void each_contact(const particles::Store& store, const scene::Scene& scene, const neighbor::PairList& pairs,
-                  const std::function<void(const ContactForce&)>& take) {
+                  const dynamics::StoredView& stored, const std::function<void(const ContactForce&)>& take) {
   const dynamics::Law law = dynamics::make_law(scene);
   const auto ids = store.ids();
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     LocalIndex i = pairs.first[p];
     LocalIndex j = pairs.second[p];
-    if (ids[static_cast<std::size_t>(i)] > ids[static_cast<std::size_t>(j)]) std::swap(i, j);
+    const bool turned = ids[static_cast<std::size_t>(i)] > ids[static_cast<std::size_t>(j)];
+    if (turned) std::swap(i, j);
     if (i >= store.owned()) continue;  // the other rank reports it
     const Touch at = touch(store, scene.box, i, j);
     if (!(at.overlap > 0.0)) continue;
+    const auto entry = static_cast<std::int64_t>(p);
+    Vec3 force = dynamics::pair_contact(scene, law, store, pairs.first[p], pairs.second[p], stored, entry).force;
+    if (turned) force = {-force[0], -force[1], -force[2]};
     const Vec3 xi = store.position(i);
     const Vec3 branch = geometry::separation(scene.box, xi, store.position(j));
-    take({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap,
-          pair_force(store, law, i, j, at), branch, middle(scene.box, xi, branch)});
+    take({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap, force, branch,
+          middle(scene.box, xi, branch)});
   }
 }
 
 std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,
-                                         const neighbor::PairList& pairs) {
+                                         const neighbor::PairList& pairs, const dynamics::StoredView& stored) {
   std::vector<ContactForce> rows;
-  each_contact(store, scene, pairs, [&](const ContactForce& contact) { rows.push_back(contact); });
+  each_contact(store, scene, pairs, stored, [&](const ContactForce& contact) { rows.push_back(contact); });
   std::sort(rows.begin(), rows.end(), [](const ContactForce& a, const ContactForce& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });
@@ -57,9 +62,8 @@ double floor_force(const comm::Comm& comm, const particles::Store& store, const 
     const LocalIndex i = walls.particle[w];
     const double overlap = wall_penetration(store, scene.box, i, neighbor::Wall::floor);
     if (!(overlap > 0.0)) continue;
-    const double r = store.radius(i);
-    const Reduced reduced{r, r * r * r / law.mass_factor};
-    forces.push_back(normal_force(law, law.wall, reduced, overlap, -store.velocity(i)[vertical]));
+    const double up = dynamics::wall_contact(scene, law, store, i, neighbor::Wall::floor).force[vertical];
+    forces.push_back(up);  // friction on a plane has no part in it
   }
   return comm::exact_sum(comm, forces);
 }

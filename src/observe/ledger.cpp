@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "dynamics/contact_law.hpp"
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
@@ -61,7 +62,9 @@ double elastic_energy(const dynamics::LawConstants& kind, double reduced_radius,
 
 /// One term for each touching pair.
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::PairList& pairs, GlobalId frozen_below, std::vector<double>& terms) {
+               const neighbor::Neighborhood& neighborhood, GlobalId frozen_below, std::vector<double>& terms) {
+  const neighbor::PairList& pairs = neighborhood.pairs();
+  const dynamics::StoredView stored = dynamics::stored_pairs(neighborhood);
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
@@ -71,15 +74,24 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
     const double ri = store.radius(i);
     const double rj = store.radius(j);
     terms.push_back(elastic_energy(law.pair, ri * rj / (ri + rj), overlap));
+    if (!scene.features.memory) continue;
+    terms.push_back(
+        dynamics::pair_contact(scene, law, store, i, j, stored, static_cast<std::int64_t>(p)).spring_energy);
   }
 }
 
 void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::WallList& walls, std::vector<double>& terms) {
+               const neighbor::Neighborhood& neighborhood, std::vector<double>& terms) {
+  const neighbor::WallList& walls = neighborhood.walls();
+  const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
     const double overlap = wall_penetration(store, scene.box, i, walls.wall[w]);
-    if (overlap > 0.0) terms.push_back(elastic_energy(law.wall, store.radius(i), overlap));
+    if (!(overlap > 0.0)) continue;
+    terms.push_back(elastic_energy(law.wall, store.radius(i), overlap));
+    if (!scene.features.memory) continue;
+    const auto entry = static_cast<std::int64_t>(w);
+    terms.push_back(dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).spring_energy);
   }
 }
 
@@ -89,8 +101,8 @@ Ledger ledger(const comm::Comm& comm, const particles::Store& store, const scene
               const dynamics::Law& law, const neighbor::Neighborhood& neighborhood, GlobalId frozen_below) {
   Terms terms;
   const double fastest = add_particles(store, scene, terms);
-  add_pairs(store, scene, law, neighborhood.pairs(), frozen_below, terms[elastic]);
-  add_walls(store, scene, law, neighborhood.walls(), terms[elastic]);
+  add_pairs(store, scene, law, neighborhood, frozen_below, terms[elastic]);
+  add_walls(store, scene, law, neighborhood, terms[elastic]);
   const std::vector<double> sums = comm::exact_sums(comm, terms);
   const auto particles = static_cast<double>(comm.sum(std::int64_t{store.owned()}));
   const double equal_mass = scene.in.particles.density * geometry::volume(3, scene.sizes.largest());

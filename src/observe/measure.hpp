@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
-#include "dynamics/law.hpp"
+#include "dynamics/contact_law.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
@@ -47,7 +47,8 @@ struct Ledger {
   double kinetic_energy;     ///< [J] translation and spin; as Motion's, to the bit
   double rotational_energy;  ///< [J] of it, spin
   double potential_energy;   ///< [J] of gravity; 0 with all centres on the floor
-  double elastic_energy;     ///< [J] of the contacts of moving particles, with each other, the frozen and walls
+  double elastic_energy;     ///< [J] of the contacts of moving particles, with each other, the frozen and walls, and of
+                             ///< their tangential, rolling and twisting springs
   Vec3 momentum;             ///< [kg m/s]
   double max_speed;          ///< [m/s]
   double mean_height;        ///< [m] of the centres
@@ -107,13 +108,14 @@ struct ContactForce {
   Vec3 middle{};           ///< [m] the point half-way, inside periodic axes
 };
 /// Calls take(contact) for each touching pair whose smaller id is owned here, in the order of the list. Local; cost
-/// O(pairs).
+/// O(pairs). `stored`: what the pairs remember; without it friction with memory is its dashpot's alone.
 void each_contact(const particles::Store& store, const scene::Scene& scene, const neighbor::PairList& pairs,
-                  const std::function<void(const ContactForce&)>& take);
+                  const dynamics::StoredView& stored, const std::function<void(const ContactForce&)>& take);
 /// The touching pairs whose smaller id is owned here, sorted by (first, second). Local; cost O(pairs log pairs).
 /// Every pair of the scene is returned by exactly one rank, with the same bits on any number of them.
 [[nodiscard]] std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,
-                                                       const neighbor::PairList& pairs);
+                                                       const neighbor::PairList& pairs,
+                                                       const dynamics::StoredView& stored = {});
 
 /// Normal force between the floor and the particles on it [N]; equals their weight at rest. Collective.
 [[nodiscard]] double floor_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,

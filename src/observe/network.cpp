@@ -86,7 +86,8 @@ Forces forces(const Specimen& pack) {
   constexpr double width = 0.1, most = 8.0;    // of the mean force
   std::vector<std::vector<double>> terms(19);  // fabric, stress, normal force
   std::vector<double> normals;
-  for (const ContactForce& c : contact_forces(pack.store, pack.scene, pack.neighborhood.pairs())) {
+  for (const ContactForce& c :
+       contact_forces(pack.store, pack.scene, pack.neighborhood.pairs(), dynamics::stored_pairs(pack.neighborhood))) {
     if (!in_bulk(pack.scene, c.middle[static_cast<std::size_t>(pack.scene.box.vertical())])) continue;
     const Vec3& l = c.branch;
     const double length = std::sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);

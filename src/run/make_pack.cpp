@@ -146,12 +146,14 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
       observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   std::vector<pack::ContactRow> rows;
   if (bed.scene.in.output.contacts) {
-    for (const observe::ContactForce& c : observe::contact_forces(bed.store, bed.scene, bed.neighborhood.pairs())) {
+    for (const observe::ContactForce& c : observe::contact_forces(bed.store, bed.scene, bed.neighborhood.pairs(),
+                                                                  dynamics::stored_pairs(bed.neighborhood))) {
       rows.push_back({c.first, c.second, c.overlap, c.force});
     }
   }
   const std::vector<std::int32_t> layers = bed.layers();
-  const observe::ColumnMaps maps = observe::column_maps(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs());
+  const observe::ColumnMaps maps = observe::column_maps(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(),
+                                                        dynamics::stored_pairs(bed.neighborhood));
   const pack::PackParts parts{.store = &bed.store,
                               .layer = layers,
                               .contacts = contacts.of_particle,

@@ -1,11 +1,12 @@
-// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [sd = 0] [data file]
+// mpirun -n N bed_bench [particles = 107000] [steps = 300] [runs = 5] [rotation = 1] [sd = 0] [data file or -] [law]
 //
 // The whole step loop (kernel, walls, ghosts, rebuild tests, rebuilds) on a settled bed of the paper's spheres
 // (example 5.3's material, r = 0.02 m, dt = 1e-4 s): a small periodic brick is packed and settled, tiled sideways
 // between walls to about the asked number, and advanced. Prints particle-steps a second and core, median and spread
 // over the runs, and bytes a particle on the worst rank. With a data file (one rank), the bed is also written there as
 // LAMMPS and LIGGGHTS read it, as it stands when the counting begins (scripts/study/compare.py). `sd` is the standard
-// deviation of Gaussian radii about 0.02 m, as a share of it, cut off at three of them (0: equal radii).
+// deviation of Gaussian radii about 0.02 m, as a share of it, cut off at three of them (0: equal radii). `law` is that
+// of the friction: sliding, mindlin or rolling (mindlin with resistance to rolling and twisting).
 #include <fmt/core.h>
 #include <mpi.h>
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 
 #include "comm/session.hpp"
 #include "observe/measure.hpp"
@@ -27,7 +29,7 @@ constexpr double radius = 0.02;     // [m]
 constexpr double brick_side = 0.5;  // [m] of the settled brick
 constexpr int brick_layers = 12;
 
-input::Input material(double side, bool rotation, double sd) {
+input::Input material(double side, bool rotation, double sd, const std::string& law) {
   input::Input in = test::small_input(3, side, radius);
   if (sd > 0.0) {
     in.particles.radius.distribution = input::SizeDistribution::gaussian;
@@ -42,6 +44,8 @@ input::Input material(double side, bool rotation, double sd) {
   in.layers.attempts = 100000;
   in.drag.coefficient = 0.005;
   in.dynamics.rotation = rotation;
+  if (law != "sliding") in.contact.tangential = input::Tangential::mindlin;
+  if (law == "rolling") in.contact.rolling_friction = in.contact.twisting_friction = 0.1;
   in.dynamics.time_step = 1e-4;
   return in;
 }
@@ -151,14 +155,15 @@ int main(int argc, char** argv) {
   const int runs = argc > 3 ? std::atoi(argv[3]) : 5;
   const bool rotation = argc > 4 ? std::atoi(argv[4]) != 0 : true;
   const double sd = argc > 5 ? std::atof(argv[5]) : 0.0;
-  const std::vector<Grain> brick = settled_brick(test::periodic(material(brick_side, rotation, sd)));
+  const std::string law = argc > 7 ? argv[7] : "sliding";
+  const std::vector<Grain> brick = settled_brick(test::periodic(material(brick_side, rotation, sd, law)));
   const int tiles =
       std::max(1, static_cast<int>(std::lround(std::sqrt(particles / static_cast<double>(brick.size())))));
-  const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, sd));
+  const scene::Scene scene = scene::build(material(brick_side * tiles, rotation, sd, law));
   run::Bed bed(comm, scene);
   lay_out(bed, brick, tiles);
   bed.stepper.advance(bed.store, bed.neighborhood, 1000);  // small tiles' seams and the first rebuilds
-  if (argc > 6 && comm.size() == 1) write_data(bed, argv[6]);
+  if (argc > 6 && std::string(argv[6]) != "-" && comm.size() == 1) write_data(bed, argv[6]);
   measure(bed, steps, runs);
   return 0;
 }

@@ -13,6 +13,7 @@
 
 #include "dynamics/kernel.hpp"
 #include "particles/store.hpp"
+#include "scene/pair_channels.hpp"
 
 namespace packmpi {
 namespace {
@@ -146,6 +147,17 @@ struct Bed {
             .fluid_velocity = {},
             .size = size,
             .periodic = {features.periodic, features.periodic}};
+    if (!features.memory) return;
+    const auto doubles = static_cast<std::size_t>(scene::stored_doubles(features));
+    pair_stored.assign(doubles * pairs.first.size(), 0.0);
+    wall_stored.assign(doubles * walls.particle.size(), 0.0);
+    data.stored_pairs = {pair_stored.data(), std::ssize(pairs.first)};
+    data.stored_walls = {wall_stored.data(), std::ssize(walls.particle)};
+    for (dynamics::LawConstants* c : {&data.law.pair, &data.law.wall}) {
+      c->shear_stiffness = 1.3 * c->stiffness;
+      c->shear_damping = 0.6 * c->damping;
+      c->rolling_friction = c->twisting_friction = features.rolling ? 0.1 : 0.0;
+    }
   }
 
   scene::Features features;
@@ -155,6 +167,7 @@ struct Bed {
   neighbor::PairList pairs;
   neighbor::WallList walls;
   std::int64_t touching = 0;
+  std::vector<double> pair_stored, wall_stored;
   std::vector<Line> ring;
   dynamics::StepData data{};
 };
@@ -194,6 +207,15 @@ void run(int count, int runs) {
   cases.back().features.friction = false;
   cases.push_back({"3D equal rotation no drag", full});
   cases.back().features.drag = false;
+  cases.push_back({"3D equal rotation memory", full});
+  cases.back().features.memory = true;
+  cases.push_back({"3D graded rotation memory", full});
+  cases.back().features.memory = cases.back().features.graded = true;
+  cases.push_back({"3D equal rotation memory rolling", full});
+  cases.back().features.memory = cases.back().features.rolling = true;
+  cases.push_back({"2D equal rotation memory", full});
+  cases.back().features.dimension = 2;
+  cases.back().features.memory = true;
   cases.push_back({"3D equal nothing else", {.dimension = 3, .rotation = false, .friction = false, .drag = false}});
   cases.push_back({"2D equal rotation", full});
   cases.back().features.dimension = 2;

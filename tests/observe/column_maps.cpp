@@ -67,7 +67,7 @@ TEST_F(Maps, AddUpToTheMeasuresOfTheWholePack) {
   for (const double one : here.top) highest = std::max(highest, one);
   EXPECT_EQ(comm_.max(highest), top(comm_, store, scene_));
   double virial = 0.0;  // of all contacts below H_d, each by the rank that tells it
-  each_contact(store, scene_, testing::all_pairs(store), [&](const ContactForce& c) {
+  each_contact(store, scene_, testing::all_pairs(store), {}, [&](const ContactForce& c) {
     if (c.middle[2] < 0.5) virial -= c.force[2] * c.branch[2];
   });
   const double all = comm::exact_sum(comm_, std::array{virial});
