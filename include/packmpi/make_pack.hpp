@@ -28,9 +28,12 @@ struct PackResult {
   double coordination = 0.0;  ///< mean touching particles
 };
 
-/// Makes the pack of a scene file on the ranks of `comm` and writes it. Collective over `comm`; throws nothing. Needs
-/// MPI to be initialised; starts PETSc on MPI_COMM_WORLD for the time of the call if nobody has, so all ranks of
-/// MPI_COMM_WORLD must call it then (each with its own communicator, if they like). Cost: the whole run.
+/// Makes the pack of a scene file on the ranks of `comm` and writes it. Collective over `comm`; throws nothing. A scene
+/// with an [ensemble] of several packs is refused (code 2). Needs MPI to be initialised; starts PETSc on MPI_COMM_WORLD
+/// for the time of the call if nobody has, so all ranks of MPI_COMM_WORLD must call it then (each with its own
+/// communicator, if they like). An error that one of several ranks meets alone, as want of memory may be, cannot be
+/// returned by all of them: that rank says it in one line on stderr and ends the job (MPI_Abort with the code).
+/// Signals are the caller's; a SIGXFSZ that is not ignored ends the process at a file limit. Cost: the whole run.
 [[nodiscard]] PackResult make_pack(MPI_Comm comm, const std::string& scene_file, const PackOptions& options = {});
 
 }  // namespace packmpi

@@ -17,7 +17,7 @@ enum class ExitCode : int {
 };
 
 /// An error a user can act on: the words say what is wrong and what to do.
-/// Throw it collectively (comm::agree), or on one rank only where no other rank can wait for it.
+/// Throw it on all ranks at once (comm::agree). Thrown on one rank alone it ends the job: comm::end_together.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& words) : std::runtime_error(words), code_(code) {}

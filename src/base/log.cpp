@@ -3,12 +3,15 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
+#include "base/text.hpp"
 
 namespace packmpi::log {
 namespace {
@@ -32,6 +35,10 @@ constexpr const char* text_pattern = "%Y-%m-%d %H:%M:%S.%e %l %v";
 constexpr const char* jsonl_pattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l",%v})";
 
 spdlog::sink_ptr file_sink(const std::string& file, Format format) {
+  struct stat there {};
+  const std::string flaw = lstat(file.c_str(), &there) == 0 ? kind_flaw(there.st_mode) : "";
+  if (!flaw.empty())
+    throw Error(ExitCode::io_failure, "cannot write the log file: " + file + " " + flaw + "; remove it");
   try {
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file);
     sink->set_pattern(format == Format::jsonl ? jsonl_pattern : text_pattern);
@@ -72,14 +79,15 @@ std::string members(std::string_view event, std::string_view text, Fields fields
   return whole.substr(1, whole.size() - 2);
 }
 
-// The text is an argument, never a format: braces in a file name are harmless.
-void say(spdlog::level::level_enum level, std::string_view text, std::string_view event = "message",
+// The text is an argument, never a format, and printable: braces and control characters in a file name are harmless.
+void say(spdlog::level::level_enum level, std::string_view words, std::string_view event = "message",
          Fields fields = {}) {
   const Outlets& out = current();
+  const std::string text = text::printable(words);
   out.terminal->log(level, "{}", text);
   if (!out.file) return;
   if (out.format == Format::jsonl) {
-    out.file->log(level, "{}", members(event, text, fields));
+    out.file->log(level, "{}", members(event, words, fields));  // JSON has escapes of its own
   } else {
     out.file->log(level, "{}", text);
   }

@@ -69,6 +69,36 @@ std::string bytes(std::uint64_t count) {
   return fmt::format("{:.1f} {}", value, units[unit]);
 }
 
+std::size_t utf8_length(std::string_view text) noexcept {
+  const auto at = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+  const auto follows = [&](std::size_t k) { return (at(k) & 0xc0U) == 0x80U; };
+  const unsigned first = at(0);
+  if (first < 0x80U) return 1;
+  if (first >= 0xc2U && first < 0xe0U) return follows(1) ? 2 : 0;
+  if (first >= 0xe0U && first < 0xf0U) {
+    const bool shortest = first != 0xe0U || at(1) >= 0xa0U;
+    const bool surrogate = first == 0xedU && at(1) >= 0xa0U;
+    return follows(1) && follows(2) && shortest && !surrogate ? 3 : 0;
+  }
+  if (first < 0xf0U || first > 0xf4U) return 0;
+  const bool in_range = first == 0xf0U ? at(1) >= 0x90U : first != 0xf4U || at(1) < 0x90U;
+  return in_range && follows(1) && follows(2) && follows(3) ? 4 : 0;
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const std::string_view one = text.substr(0, std::max<std::size_t>(length, 1));
+    text.remove_prefix(one.size());
+    const bool ascii_control = length == 1 && (static_cast<unsigned char>(one[0]) < 0x20U || one[0] == 0x7f);
+    const bool control = length == 2 && one[0] == '\xc2' && static_cast<unsigned char>(one[1]) < 0xa0U;
+    const bool turns = (one >= "\u2028" && one <= "\u202e") || (one >= "\u2066" && one <= "\u2069");
+    out += length == 0 || ascii_control || control || turns ? std::string_view("?") : one;
+  }
+  return out;
+}
+
 std::string_view trimmed(std::string_view text) noexcept {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};

@@ -26,4 +26,12 @@ namespace packmpi::text {
 /// `text` without the blanks and tabs at its ends; a part of it, not a copy.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 
+/// Bytes of the UTF-8 character that `text`, which is not empty, begins with; 0 if it begins with none.
+[[nodiscard]] std::size_t utf8_length(std::string_view text) noexcept;
+
+/// `text` on one line, and without what a terminal would obey: control characters (U+0000 to U+001F, U+007F to U+009F),
+/// characters that turn or end a line elsewhere (U+2028 to U+202E, U+2066 to U+2069) and bytes that are no UTF-8, as
+/// '?'.
+[[nodiscard]] std::string printable(std::string_view text);
+
 }  // namespace packmpi::text

@@ -4,12 +4,15 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <system_error>
 
 #include "base/log.hpp"
+#include "base/memory.hpp"
+#include "base/terminal.hpp"
 #include "base/text.hpp"
 #include "cli/convert.hpp"
 #include "cli/info.hpp"
-#include "comm/session.hpp"
+#include "comm/petsc.hpp"
 #include "disk/text_file.hpp"
 #include "forecast/estimate.hpp"
 #include "input/fidelity.hpp"
@@ -40,15 +43,17 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
   const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
   if (comm.rank() == 0) {
     const auto [nx, ny] = ownership.grid().counts();
-    fmt::print(
+    std::string words = fmt::format(
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
-    fmt::print("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
-    fmt::print("# fidelity = \"{}\":\n", scene.in.fidelity);
-    for (const std::string& line : input::preset_in_use(scene.in)) fmt::print("#   {}\n", line);
+    words +=
+        fmt::format("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
+    words += fmt::format("# fidelity = \"{}\":\n", scene.in.fidelity);
+    for (const std::string& line : input::preset_in_use(scene.in)) words += fmt::format("#   {}\n", line);
+    print(words);
   }
   return 0;
 }
@@ -58,8 +63,7 @@ int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& 
   const report::RunRecord record = run::make_pack(comm, scene, options);
   const bool met = run::targets_met(record);
   if (comm.rank() == 0) {
-    fmt::print("{}\n", report::to_table(record));
-    std::fflush(stdout);
+    print(report::to_table(record) + "\n");
     log::info(fmt::format("{} in {}", met ? "done" : "finished, but a target was missed",
                           text::duration(record.wall_seconds)));
   }
@@ -78,60 +82,72 @@ int begin_scene(const comm::Comm& comm, const Request& request) {
   return 0;
 }
 
-int act(const comm::Comm& comm, const Request& request) {
-  log::start(comm.rank(), std::nullopt, request.run.verbosity);
-  if (request.command == Command::info) {
-    const std::string words = describe_file(comm, request.run.scene);
-    if (comm.rank() == 0) fmt::print("{}", words);
-    return 0;
-  }
-  if (request.command == Command::init) return begin_scene(comm, request);
-  if (request.command == Command::analyze) {
-    const std::string table = run::analyze(comm, request.run.scene);
-    if (comm.rank() == 0) fmt::print("{}", table);
-    return 0;
-  }
-  if (request.command == Command::convert) {
-    const std::string words = convert(comm, request);
-    if (comm.rank() == 0) fmt::print("{}", words);
-    return 0;
-  }
+// What is printed for a command that only tells; the same words on all ranks.
+std::string told(const comm::Comm& comm, const Request& request) {
   if (request.command == Command::tool) {  // alone, it would have begun before MPI (cli/tools.hpp)
     throw Error(ExitCode::bad_input, fmt::format("packmpi {} is one process: start it without mpirun", request.name));
   }
-  if (request.command == Command::estimate) {
-    const report::Estimate told = forecast::estimate(comm, request.run.scene, request.run.overrides, request.question);
-    if (comm.rank() == 0) fmt::print("{}", request.question.json ? report::to_json(told) : report::to_table(told));
-    return 0;
-  }
+  if (request.command == Command::info) return describe_file(comm, request.run.scene);
+  if (request.command == Command::analyze) return run::analyze(comm, request.run.scene);
+  if (request.command == Command::convert) return convert(comm, request);
+  const report::Estimate told = forecast::estimate(comm, request.run.scene, request.run.overrides, request.question);
+  return request.question.json ? report::to_json(told) : report::to_table(told);
+}
+
+// Of `run` and `check`.
+int use_scene(const comm::Comm& comm, const Request& request) {
+  const Occupation now("the scene and its lateral grid");
   const input::Input in = input::read(comm, request.run.scene, request.run.overrides);
   comm::petsc_options(in.petsc.options);
+  const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
+  expect_memory(forecast::memory_a_rank(scene, comm.size()));
   if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
     return run::make_ensemble(comm, in, request.run);
-  const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   warn_of_step(scene);
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
+}
+
+int act(const comm::Comm& comm, const Request& request) {
+  log::start(comm.rank(), std::nullopt, request.run.verbosity);
+  if (request.command == Command::init) return begin_scene(comm, request);
+  if (request.command == Command::run || request.command == Command::check) return use_scene(comm, request);
+  const std::string words = told(comm, request);
+  if (comm.rank() == 0) print(words);
+  return 0;
+}
+
+int answer(const comm::Comm& comm, int argc, const char* const* argv) {
+  const auto parsed = parse_command_line(argc, argv);
+  const Reply* reply = std::get_if<Reply>(&parsed);
+  if (reply == nullptr) return act(comm, std::get<Request>(parsed));
+  if (comm.rank() == 0 && reply->code == 0) print(reply->text);
+  if (comm.rank() == 0 && reply->code != 0) std::fputs(reply->text.c_str(), stderr);
+  return reply->code;
+}
+
+// What was printed must have arrived.
+void check_stdout(const comm::Comm& comm) {
+  comm::agree_on(comm, [] {
+    if (const int number = stdout_failure(); number != 0) {
+      throw Error(ExitCode::io_failure, fmt::format("cannot write to the standard output: {}; files are not concerned",
+                                                    std::generic_category().message(number)));
+    }
+  });
 }
 
 }  // namespace
 
 int program(MPI_Comm world, int argc, const char* const* argv) {
   const comm::Comm comm(world);
-  const auto parsed = parse_command_line(argc, argv);
-  if (const Reply* reply = std::get_if<Reply>(&parsed)) {
-    if (comm.rank() == 0) fmt::print(reply->code == 0 ? stdout : stderr, "{}", reply->text);
-    return reply->code;
-  }
   int code = 0;
-  try {
-    code = act(comm, std::get<Request>(parsed));
-  } catch (const Error& error) {  // thrown on every rank alike
-    const bool stopped = error.code() == ExitCode::stopped_early;
-    if (comm.rank() == 0) stopped ? log::warn(error.what()) : log::error(error.what());
-    code = static_cast<int>(error.code());
-  } catch (const std::exception& error) {  // one rank alone: the others may wait for it
-    comm::abort_all(static_cast<int>(ExitCode::numerical_failure),
-                    fmt::format("rank {}: {}", comm.rank(), error.what()));
+  const comm::Failure failure = comm::end_together(comm, [&] {
+    code = answer(comm, argc, argv);
+    check_stdout(comm);
+  });
+  if (failure.code != ExitCode::done) {
+    const bool stopped = failure.code == ExitCode::stopped_early;
+    if (comm.rank() == 0) stopped ? log::warn(failure.words) : log::error(failure.words);
+    code = static_cast<int>(failure.code);
   }
   log::finish();
   return code;

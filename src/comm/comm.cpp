@@ -123,12 +123,4 @@ std::vector<std::int64_t> Comm::gather(std::span<const std::int64_t> mine) const
   return all;
 }
 
-void agree(const Comm& comm, ExitCode code, const std::optional<std::string>& complaint) {
-  const auto first = comm.min(complaint ? std::int64_t{comm.rank()} : std::int64_t{comm.size()});
-  if (first == comm.size()) return;
-  const std::string mine = static_cast<char>(code) + complaint.value_or("");
-  const std::string theirs = comm.broadcast(static_cast<Rank>(first), mine);
-  throw Error(static_cast<ExitCode>(theirs[0]), theirs.substr(1));
-}
-
 }  // namespace packmpi::comm

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -77,13 +78,39 @@ class Comm {
                                       int longest_message);
 };
 
-/// Collective. Every rank returns, or every rank throws the complaint of the lowest rank that has one, with its code.
+/// An Error that all ranks throw at the same place, with the same words: agree() throws it, nobody else does.
+class AgreedError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What was thrown, as words for the user.
+struct Failure {
+  ExitCode code = ExitCode::done;
+  std::string words;
+};
+/// The exception at hand, of any type; std::bad_alloc as memory_words(). `otherwise` is the code of what is neither an
+/// Error nor want of memory. Only within a catch block. Local.
+[[nodiscard]] Failure caught(ExitCode otherwise);
+
+/// Collective. Every rank returns, or every rank throws the complaint of the lowest rank that has one, with its code,
+/// as an AgreedError.
 void agree(const Comm& comm, ExitCode code, const std::optional<std::string>& complaint);
 
+/// Collective, for what all ranks know: throws `words`, of rank 0, on every rank, as agree() does.
+[[noreturn]] void fail_together(const Comm& comm, ExitCode code, const std::string& words);
+
 /// Collective. Runs `action` (local work only, no communication inside) on every rank; an Error thrown on any rank is
-/// thrown on all, with its words and code; any other std::exception becomes an Error(io_failure).
+/// thrown on all, with its words and code; want of memory becomes an Error(numerical_failure), any other exception an
+/// Error(io_failure).
 template <class Action>
 void agree_on(const Comm& comm, Action&& action);
+
+/// Collective. Runs `action`, which may be collective itself, and catches whatever it throws: what came of it, the same
+/// on all ranks; code done if nothing was thrown. Only an AgreedError is known to be everybody's. After any other the
+/// rank waits `patience` seconds: if all the others come here, too, the lowest rank's words are those of all; else they
+/// may wait for this one for ever, and it ends the job with one line (abort_all). Cost: a communicator.
+[[nodiscard]] Failure end_together(const Comm& comm, const std::function<void()>& action, double patience = 2.0);
 
 /// Collective. The sum of all ranks' terms, correctly independent of their order and of the number of ranks: each term
 /// is rounded to a multiple of 2^-96 of the power of two above the largest magnitude and added in integers; the
@@ -108,12 +135,10 @@ void agree_on(const Comm& comm, Action&& action) {
   ExitCode code = ExitCode::done;
   try {
     action();
-  } catch (const Error& error) {
-    words = error.what();
-    code = error.code();
-  } catch (const std::exception& error) {
-    words = error.what();
-    code = ExitCode::io_failure;
+  } catch (...) {
+    const Failure failure = caught(ExitCode::io_failure);
+    words = failure.words;
+    code = failure.code;
   }
   agree(comm, code, words);
 }

@@ -69,7 +69,8 @@ std::vector<double> exact_sums(const Comm& comm, std::span<const std::vector<dou
   std::vector<double> sums(n);
   for (std::size_t k = 0; k < n; ++k) {
     const auto all = std::span(words).subspan(k * words_per_sum, words_per_sum);
-    if (all[limb_count] > 0) throw Error(ExitCode::numerical_failure, "an exact sum of more than 2^30 terms of a rank");
+    if (all[limb_count] > 0)
+      fail_together(comm, ExitCode::numerical_failure, "an exact sum of more than 2^30 terms of a rank");
     sums[k] = total(all.first(limb_count), largest[k]);
   }
   return sums;

@@ -3,38 +3,54 @@
 #include <mpi.h>
 #include <petscsys.h>
 
+#include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace packmpi::comm {
 namespace {
 
-/// PETSc's start and end have no caller who could do anything about a failure.
-void require(PetscErrorCode failure, const char* what) {
-  if (failure != 0) abort_all(static_cast<int>(ExitCode::numerical_failure), std::string("PETSc failed to ") + what);
-}
-
-std::string reason(PetscErrorCode failure) {
-  const char* text = nullptr;
-  PetscErrorMessage(failure, &text, nullptr);
-  return text != nullptr ? text : "PETSc error " + std::to_string(failure);
-}
-
-/// PETSc passes over words that are not options; and a file of options is read by rank 0 alone, whose failure would
-/// leave the others waiting, and is not kept with the run.
-void refuse_misunderstandings(const std::string& words) {
-  const auto first = words.find_first_not_of(' ');
-  if (first != std::string::npos && words[first] != '-') {
-    throw Error(ExitCode::bad_input, "PETSc options start with a '-', unlike \"" + words + "\"");
+/// A variable of the environment that is not there while this lives. PETSc ends in an error of many lines where it
+/// names a file that is missing, and runs what is in it where it is not.
+class WithoutVariable {
+ public:
+  explicit WithoutVariable(const char* name) : name_(name) {
+    if (const char* value = std::getenv(name); value != nullptr) value_ = value;
+    unsetenv(name);
   }
-  if (words.find("-options_file") != std::string::npos) {
-    throw Error(ExitCode::bad_input, "PETSc options must be written out, without -options_file: \"" + words + "\"");
+  ~WithoutVariable() {
+    if (value_) setenv(name_, value_->c_str(), 1);
   }
-}
+  WithoutVariable(const WithoutVariable&) = delete;
+  WithoutVariable& operator=(const WithoutVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> value_;
+};
 
 }  // namespace
+
+void Session::start_petsc() {
+  // PETSc keeps these. Its handler would turn our TERM and USR1, and every crash, into MPI_Abort without a stack.
+  static std::array<char, 8> program{"packmpi"};
+  static std::array<char, 14> no_files{"-skip_petscrc"};
+  static std::array<char, 19> no_signals{"-no_signal_handler"};
+  static std::array<char*, 4> words{program.data(), no_files.data(), no_signals.data(), nullptr};
+  static int count = 3;
+  static char** list = words.data();
+  const WithoutVariable options("PETSC_OPTIONS");
+  const WithoutVariable yaml("PETSC_OPTIONS_YAML");
+  PETSC_COMM_WORLD = MPI_COMM_WORLD;
+  const PetscErrorCode failure = PetscInitialize(&count, &list, nullptr, nullptr);
+  // There is no caller who could do anything about it.
+  if (failure != 0) abort_all(static_cast<int>(ExitCode::numerical_failure), "PETSc failed to start");
+}
 
 Session::Session(int& argc, char**& argv) {
   int running = 0;
@@ -46,33 +62,21 @@ Session::Session(int& argc, char**& argv) {
   PetscBool petsc_running = PETSC_FALSE;
   PetscInitialized(&petsc_running);
   if (petsc_running == PETSC_FALSE) {
-    PETSC_COMM_WORLD = MPI_COMM_WORLD;
-    require(PetscInitializeNoArguments(), "start");
-    // PETSc's handler would turn our TERM and USR1, and every crash, into MPI_Abort without a stack.
-    require(PetscPopSignalHandler(), "give the signals back");
+    start_petsc();
     owns_petsc_ = true;
   }
+  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // our errors have its words (comm/petsc.hpp)
 }
 
 Session::~Session() {
+  if (!owns_petsc_) PetscPopErrorHandler();
   if (owns_petsc_) PetscFinalize();
   if (owns_mpi_) MPI_Finalize();
 }
 
-void petsc_options(const std::string& words) {
-  refuse_misunderstandings(words);
-  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // no traceback on stderr: the words below are for the user
-  const PetscErrorCode failure = PetscOptionsInsertString(nullptr, words.c_str());
-  PetscPopErrorHandler();
-  if (failure != 0) throw Error(ExitCode::bad_input, "PETSc refuses the options \"" + words + "\": " + reason(failure));
-  // PetscInitialize looks for -log_view once; asked for later, the log must be begun by hand.
-  PetscBool wants_log = PETSC_FALSE;
-  PetscOptionsHasName(nullptr, nullptr, "-log_view", &wants_log);
-  if (wants_log == PETSC_TRUE) PetscLogDefaultBegin();
-}
-
 void abort_all(int code, const std::string& words) {
-  std::fprintf(stderr, "packmpi: %s\n", words.c_str());
+  (void)std::signal(SIGTERM, SIG_DFL);  // another rank may be quicker: then this one is to end without a word
+  std::fprintf(stderr, "packmpi: %s\n", text::printable(words).c_str());
   std::fflush(stderr);
   int running = 0;
   MPI_Initialized(&running);

@@ -5,8 +5,9 @@
 namespace packmpi::comm {
 
 /// Starts MPI (and PETSc on MPI_COMM_WORLD) in its constructor if nobody did, and ends what it started.
-/// PETSc sees the environment's PETSC_OPTIONS but never the program's command line, and catches no signals.
-/// Exactly one per process, made in main(). Collective over all ranks.
+/// A PETSc that is started here sees neither the command line, nor .petscrc of any folder, nor PETSC_OPTIONS and
+/// PETSC_OPTIONS_YAML of the environment: what it is told is the scene's [petsc] options. It catches no signals and
+/// prints no errors (comm/petsc.hpp). One at a time. Collective over all ranks.
 class Session {
  public:
   Session(int& argc, char**& argv);
@@ -15,13 +16,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 
  private:
+  void start_petsc();
   bool owns_mpi_ = false;
   bool owns_petsc_ = false;
 };
-
-/// Adds options in PETSc's own words, for example "-log_view :log.txt". Needs a Session. The same words on every rank.
-/// Errors: Error(bad_input) when they do not start with '-', for -options_file, and with PETSc's reason. Local.
-void petsc_options(const std::string& words);
 
 /// Ends every rank at once with `code`, for the case where the ranks cannot agree any more.
 [[noreturn]] void abort_all(int code, const std::string& words);

@@ -133,10 +133,11 @@ StepReport Implicit::step(const Law& law, particles::Store& store, neighbor::Nei
       continue;
     }
     if (++halvings > most_halvings) {
-      throw Error(ExitCode::numerical_failure,
-                  fmt::format("the implicit step of {:g} s was not solved, not even {} of it; use a smaller "
-                              "dynamics.time_step or contact.regularisation = \"viscous\" with a longer slip_time",
-                              time_step, share));
+      comm::fail_together(
+          *comm_, ExitCode::numerical_failure,
+          fmt::format("the implicit step of {:g} s was not solved, not even {} of it; use a smaller "
+                      "dynamics.time_step or contact.regularisation = \"viscous\" with a longer slip_time",
+                      time_step, share));
     }
     share *= 0.5;
     if (++counters_.halvings <= told_halvings && comm_->rank() == 0) {

@@ -2,18 +2,11 @@
 #pragma once
 #include <petscsys.h>
 
-#include <string>
-
-#include "base/error.hpp"
+#include "comm/petsc.hpp"
 
 namespace packmpi::dynamics {
 
-/// Throws Error(numerical_failure) if PETSc failed. Its own words are on stderr then.
-inline void check_petsc(PetscErrorCode code) {
-  if (code != 0) {
-    throw Error(ExitCode::numerical_failure,
-                "PETSc failed in the implicit scheme (error " + std::to_string(code) + ")");
-  }
-}
+/// Throws Error(numerical_failure) if PETSc failed.
+inline void check_petsc(PetscErrorCode code) { comm::check_petsc(code, "solve an implicit step"); }
 
 }  // namespace packmpi::dynamics

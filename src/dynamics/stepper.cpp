@@ -35,7 +35,7 @@ StepData part_of(StepData whole, const neighbor::Leg& before, const neighbor::Le
 }  // namespace
 
 Stepper::Stepper(const comm::Comm& comm, const scene::Scene& scene) : comm_(&comm), scene_(&scene) {
-  kernel_ = select_kernel(scene.features);
+  comm::agree_on(comm, [&] { kernel_ = select_kernel(scene.features); });  // PACKMPI_ARCH of one rank alone
   if (scene.in.dynamics.theta > 0.0) implicit_ = std::make_unique<Implicit>(comm, scene);
   use(scene.last());
 }

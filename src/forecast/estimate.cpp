@@ -180,6 +180,11 @@ double list_bytes(const scene::Scene& scene) {
   return growth * pair_bytes * pairs_a_particle[static_cast<std::size_t>(scene.box.dimension - 2)];
 }
 
+// Of a rank with `own` particles.
+double settling_bytes(const scene::Scene& scene, double own, double ghosts) {
+  return program_bytes + own * ((1.0 + ghosts) * own_bytes(scene) + list_bytes(scene));
+}
+
 // A row as a run writes it: its numbers have all their digits.
 report::LayerRow some_row() {
   constexpr double digits = 0.12345678901234567;
@@ -258,7 +263,7 @@ void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   scene::check_ranks(grid, scene.in.parallel.decomposition, ranks);
   e.ghosts = ghost_share(scene, ranks);
   const double own = static_cast<double>(e.particles.value) / ranks;
-  const double settling = program_bytes + own * ((1.0 + e.ghosts) * own_bytes(scene) + list_bytes(scene));
+  const double settling = settling_bytes(scene, own, e.ghosts);
   e.settling_bytes = std::llround(settling);
   e.writing_bytes = std::llround(settling + writing_bytes * own);
 }
@@ -281,6 +286,13 @@ std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, s
   const std::int64_t moved = growing * (growing + 1) / 2 + growing * (layers - growing);
   const std::int64_t relaxation = scene.relaxation > 0.0 ? layers * run::steps_of(scene, run::Part::relaxation) : 0;
   return a_layer * (moved * run::steps_of(scene, run::Part::layer) + relaxation);
+}
+
+std::int64_t memory_a_rank(const scene::Scene& scene, int ranks) {
+  report::Estimate e;
+  add_counts(scene, scene::expected_fraction(scene), e);
+  const double own = static_cast<double>(e.particles.value) / ranks;
+  return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) + writing_bytes * own);
 }
 
 report::Estimate estimate(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides,

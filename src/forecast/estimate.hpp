@@ -32,4 +32,7 @@ struct Question {
 /// Local, pure.
 [[nodiscard]] std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, std::int64_t a_layer);
 
+/// Memory that a rank of `ranks` has at most in a run of this scene [B]. Local, pure.
+[[nodiscard]] std::int64_t memory_a_rank(const scene::Scene& scene, int ranks);
+
 }  // namespace packmpi::forecast

@@ -10,14 +10,12 @@
 
 #include "base/grow.hpp"
 #include "comm/datatype.hpp"
+#include "comm/petsc.hpp"
 
 namespace packmpi::neighbor {
 namespace {
 
-void check(PetscErrorCode code) {
-  if (code != 0)
-    throw Error(ExitCode::io_failure, "PETSc could not exchange ghosts (error " + std::to_string(code) + ")");
-}
+void check(PetscErrorCode code) { comm::check_petsc(code, "exchange ghosts"); }
 
 // What travels at a rebuild before the particles, whose first `early` are of the first half.
 struct Heading {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/grow.hpp"
+#include "base/memory.hpp"
 #include "base/timer.hpp"
 #include "scene/limits.hpp"
 #include "scene/pair_channels.hpp"
@@ -67,6 +68,7 @@ void Neighborhood::release(particles::Store& store) {
 }
 
 void Neighborhood::rebuild(particles::Store& store) {
+  const Occupation now("the neighbour lists");
   const Stopwatch watch;
   store.set_ghosts(0);
   const std::vector<Rank> destination = destinations(store);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "comm/petsc.hpp"
 
 namespace packmpi::observe {
 
@@ -36,7 +37,7 @@ struct ColumnValue {
   double value;
 };
 
-/// 0 in every column at first. PETSc objects are destroyed on every path; a PETSc error ends the job, as MPI's do.
+/// 0 in every column at first. PETSc objects are destroyed on every path; a PETSc error is an Error.
 /// Construction and destruction are collective. Memory: O(columns / ranks).
 class ColumnField {
  public:
@@ -55,7 +56,7 @@ class ColumnField {
 
  private:
   void send(std::span<const ColumnValue> values, InsertMode mode);
-  void check(PetscErrorCode code) const { CHKERRABORT(comm_, code); }
+  static void check(PetscErrorCode code) { comm::check_petsc(code, "gather values of columns"); }
 
   MPI_Comm comm_;
   PetscInt used_;    // columns along x

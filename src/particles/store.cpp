@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/grow.hpp"
+#include "base/memory.hpp"
 
 namespace packmpi::particles {
 namespace {
@@ -69,7 +70,7 @@ void AlignedDoubles::resize(std::size_t size) {
     const std::size_t wanted = size + size / 10;
     const std::size_t capacity = (wanted + padding - 1) / padding * padding;  // aligned_alloc takes whole lines
     std::unique_ptr<double, Free> grown(static_cast<double*>(std::aligned_alloc(alignment, allocated(capacity))));
-    if (!grown) throw std::bad_alloc();
+    if (!grown) throw OutOfMemory(allocated(capacity));
     if (size_ > 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(double));
     data_ = std::move(grown);
     capacity_ = capacity;

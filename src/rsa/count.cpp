@@ -66,7 +66,7 @@ std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene,
   const int power = scene.box.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
   if (!(target > 0.0) || !(mean > 0.0))
-    throw Error(ExitCode::bad_input, "layers: fraction, thickness and radii must be positive");
+    comm::fail_together(comm, ExitCode::bad_input, "layers: fraction, thickness and radii must be positive");
   if (scene.sizes.equal()) return count_of_equals(target, geometry::volume(power, scene.sizes.largest()));
   Tally tally(scene, region.layer, target);
   std::int64_t done = 0;

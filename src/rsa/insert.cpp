@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/memory.hpp"
 #include "rsa/filling.hpp"
 #include "rsa/pace.hpp"
 
@@ -41,8 +42,8 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
   return std::nullopt;
 }
 
-[[noreturn]] void give_up(const scene::Scene& scene, const LayerRegion& region, const Insertion& got, int size_class,
-                          std::uint32_t attempts) {
+[[noreturn]] void give_up(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region,
+                          const Insertion& got, int size_class, std::uint32_t attempts) {
   const std::uint32_t limit = attempt_limit(scene);
   const double share = got.solid_volume / (scene.box.floor_area() * region.thickness);
   std::string where;
@@ -50,8 +51,8 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
     where = fmt::format(" at size class {} of {}, from the largest down", size_class + 1, size_classes);
   }
   const bool early = attempts < limit;
-  throw Error(
-      ExitCode::bad_input,
+  comm::fail_together(
+      comm, ExitCode::bad_input,
       fmt::format("layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of {:.4f}, "
                   "after {} trials; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates "
                   "near 0.547 "
@@ -62,12 +63,12 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
                   early ? "" : " or layers.attempts"));
 }
 
-void check_room(const scene::Scene& scene, const LayerRegion& region) {
+void check_room(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
   const double diameter = 2.0 * scene.sizes.largest();
   if (region.thickness >= diameter) return;
-  throw Error(ExitCode::bad_input,
-              fmt::format("layers.thickness = {} m is less than the largest particle diameter, {} m", region.thickness,
-                          diameter));
+  comm::fail_together(comm, ExitCode::bad_input,
+                      fmt::format("layers.thickness = {} m is less than the largest particle diameter, {} m",
+                                  region.thickness, diameter));
 }
 
 }  // namespace
@@ -98,7 +99,8 @@ int size_class(const scene::Sizes& sizes, double radius) {
 
 Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
                  const LayerRegion& region, particles::Store& store, const std::function<void()>& between_volleys) {
-  check_room(scene, region);
+  const Occupation now("the insertion of a layer");
+  check_room(comm, scene, region);
   Insertion got;
   got.target = particles_needed(comm, scene, region);
   Filling filling(comm, scene, ownership, region, got.target);
@@ -109,7 +111,7 @@ Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene:
                                     got, between_volleys);
     if (!failed) continue;
     got.solid_volume = filling.solid_volume();
-    give_up(scene, region, got, k, *failed);
+    give_up(comm, scene, region, got, k, *failed);
   }
   got.solid_volume = filling.solid_volume();
   return got;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/log.hpp"
+#include "base/terminal.hpp"
 #include "disk/text_file.hpp"
 #include "input/read.hpp"
 #include "report/ensemble.hpp"
@@ -57,15 +58,15 @@ void check_free(const std::vector<Member>& all, const Options& options) {
 int make_member(const comm::Comm& group, const input::Input& in, const Member& member, Options options) {
   options.verbosity = log::Verbosity::quiet;  // many packs at a time
   try {
-    const scene::Scene scene = scene::build(member_input(in, member));
+    scene::Scene scene;
+    comm::agree_on(group, [&] { scene = scene::build(member_input(in, member)); });
     const report::RunRecord record = make_pack(group, scene, options);
     if (group.rank() == 0) {
-      fmt::print("set {} pack {} (seed {}): {} particles, phi_bulk {:.4f}, {:.3g} s\n", member.set, member.pack,
-                 member.seed, record.particles, record.phi_bulk, record.wall_seconds);
-      std::fflush(stdout);
+      print(fmt::format("set {} pack {} (seed {}): {} particles, phi_bulk {:.4f}, {:.3g} s\n", member.set, member.pack,
+                        member.seed, record.particles, record.phi_bulk, record.wall_seconds));
     }
     return static_cast<int>(targets_met(record) ? ExitCode::done : ExitCode::target_missed);
-  } catch (const Error& error) {  // on the whole group alike
+  } catch (const comm::AgreedError& error) {
     const bool stopped = error.code() == ExitCode::stopped_early;
     if (group.rank() == 0 && !stopped) log::error(fmt::format("{}: {}", member.name, error.what()));
     return static_cast<int>(error.code());
@@ -98,7 +99,7 @@ void write_tables(const comm::Comm& world, const input::Input& in, const std::ve
                                      {".ensemble.md", report::to_markdown(table)}}) {
     disk::write_text(world, path_of(options, in.name, ending), text);
   }
-  if (world.rank() == 0) fmt::print("\n{}", report::to_markdown(table));
+  if (world.rank() == 0) print(fmt::format("\n{}", report::to_markdown(table)));
 }
 
 }  // namespace

@@ -114,11 +114,10 @@ void Journal::progress(double share, double kinetic_energy, double top) {
                   relaxing_ ? "relaxation" : "layer", bed_.first_ids.size(), 100.0 * share,
                   bed_.count - bed_.moving_from, top, kinetic_energy, steps / now * 1e-6, text::duration(left));
   if (terminal_) {
-    fmt::print("\r{}\033[K", line);
+    print(fmt::format("\r{}\033[K", line));
   } else {
-    fmt::print("{}\n", line);
+    print(line + "\n");
   }
-  std::fflush(stdout);
 }
 
 void Journal::layer_settled(const report::LayerRow& row) {
@@ -157,8 +156,7 @@ void Journal::relaxed(double height) {
 
 // On a terminal the progress line gives way.
 void Journal::tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const {
-  if (bed_.comm.rank() == 0 && terminal_ && !quiet_) fmt::print("\r\033[K");
-  std::fflush(stdout);
+  if (bed_.comm.rank() == 0 && terminal_ && !quiet_) print("\r\033[K");
   log::event(event, line, fields);
 }
 

@@ -100,7 +100,7 @@ void Keeper::look(bool due) {
   waits_ = false;
   try {
     write();
-  } catch (const Error& error) {
+  } catch (const comm::AgreedError& error) {
     if (error.code() != ExitCode::io_failure) throw;
     keep_going_without(error.what());
   }
@@ -178,8 +178,8 @@ void Keeper::stop(Reason reason) {
   if (!kept_ || last_step_ != bed_.steps) write();
   constexpr std::array<const char*, 5> words{"", "a signal said so", "the STOP file is there", "the time limit is near",
                                              "--max-steps are done"};
-  throw Error(
-      ExitCode::stopped_early,
+  comm::fail_together(
+      bed_.comm, ExitCode::stopped_early,
       fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", bed_.steps,
                   bed_.first_ids.size(), files_.slots[1 - slot_], words.at(static_cast<std::size_t>(reason))));
 }

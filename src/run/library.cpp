@@ -1,6 +1,9 @@
 // The public face of the program: include/packmpi/make_pack.hpp.
+#include <fmt/core.h>
+
 #include <filesystem>
 
+#include "comm/petsc.hpp"
 #include "comm/session.hpp"
 #include "packmpi/make_pack.hpp"
 #include "run/make_pack.hpp"
@@ -18,8 +21,18 @@ run::Options options_of(const std::string& scene_file, const PackOptions& option
   return out;
 }
 
+void refuse_ensemble(const input::Input& in) {
+  const int packs = in.ensemble.sets * in.ensemble.packs;
+  if (packs == 1) return;
+  throw Error(ExitCode::bad_input,
+              fmt::format("{}: ensemble: {} packs, and make_pack makes one; call it for each seed with set = "
+                          "{{\"ensemble.sets=1\", \"ensemble.packs=1\", \"seed=...\"}}, or use the program",
+                          in.file, packs));
+}
+
 PackResult make(const comm::Comm& comm, const run::Options& options) {
   const input::Input in = input::read(comm, options.scene, options.overrides);
+  refuse_ensemble(in);
   comm::petsc_options(in.petsc.options);
   const report::RunRecord record = run::make_pack(comm, scene::build(in), options);
   PackResult result;
@@ -41,11 +54,11 @@ PackResult make_pack(MPI_Comm world, const std::string& scene_file, const PackOp
   const comm::Session session(no_arguments, none);
   const comm::Comm comm(world);
   PackResult result;
-  try {
-    result = make(comm, options_of(scene_file, options));
-  } catch (const Error& error) {  // thrown on every rank alike
-    result.code = static_cast<int>(error.code());
-    result.error = error.what();
+  const comm::Failure failure = comm::end_together(comm, [&] { result = make(comm, options_of(scene_file, options)); });
+  if (failure.code != ExitCode::done) {
+    result = {};
+    result.code = static_cast<int>(failure.code);
+    result.error = failure.words;
   }
   log::finish();
   return result;

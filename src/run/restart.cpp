@@ -95,7 +95,7 @@ std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>
       pack::RunState state = pack::read_checkpoint(bed.comm, path, bed.store);
       if (!passed_over.empty()) log::warn("passed over: " + passed_over);
       return {std::move(state), path};
-    } catch (const Error& error) {  // on all ranks alike
+    } catch (const comm::AgreedError& error) {
       passed_over += fmt::format("{}{}", passed_over.empty() ? "" : "; ", error.what());
       bed.store = particles::Store(bed.store.layout());
     }

@@ -28,21 +28,32 @@ extern "C" void packmpi_on_signal(int number) {
   ended_before = 1;
 }
 
-}  // namespace
-
-Signals::Signals() {
-  checkpoint_wanted = 0;
-  stop_wanted = 0;
-  ended_before = 0;
+struct sigaction our_action() {
   struct sigaction action {};
   action.sa_handler = packmpi_on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
+  return action;
+}
+
+}  // namespace
+
+void keep_user_signals() {
+  const struct sigaction action = our_action();
+  for (const int number : {SIGUSR1, SIGUSR2}) sigaction(number, &action, nullptr);
+}
+
+// The flags are not cleared: what came before the run began is meant for it.
+Signals::Signals() {
+  ended_before = 0;
+  const struct sigaction action = our_action();
   for (std::size_t k = 0; k < caught.size(); ++k) sigaction(caught[k], &action, &former[k]);
 }
 
 Signals::~Signals() {
   for (std::size_t k = 0; k < caught.size(); ++k) sigaction(caught[k], &former[k], nullptr);
+  checkpoint_wanted = 0;
+  stop_wanted = 0;
 }
 
 Wish take_wish() {

@@ -71,7 +71,7 @@ void check_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind, in
 
 Ownership::Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, input::Decomposition kind)
     : comm_(&comm), grid_(grid), kind_(kind), tile_(kind == input::Decomposition::metis ? tile_edge(grid) : 1) {
-  check_ranks(grid_, kind_, comm.size());  // the same on all ranks
+  comm::agree_on(comm, [&] { check_ranks(grid_, kind_, comm.size()); });
   table_ = cut(std::vector<std::int64_t>(weight_count(), 0));
   collect();
 }

@@ -71,4 +71,23 @@ TEST(Trimmed, OfBlanksAndTabsAtItsEnds) {
   EXPECT_EQ(text::trimmed(""), "");
 }
 
+TEST(Printable, KeepsLettersAndNothingThatATerminalObeys) {
+  EXPECT_EQ(text::printable("a b, Größe, 東京, \U0001F600"), "a b, Größe, 東京, \U0001F600");
+  EXPECT_EQ(text::printable("a\nb\tc\x1b[2J\x7f"), "a?b?c?[2J?");
+  EXPECT_EQ(text::printable("\xc2\x9b"), "?") << "U+009B, the escape of one character";
+  EXPECT_EQ(text::printable("a\u2028b\u202ec\u2066"), "a?b?c?") << "line end and directions";
+  EXPECT_EQ(text::printable("\xff\xc3\x41\xe2\x82"), "??A??");
+  EXPECT_EQ(text::printable("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80\xf4\x90\x80\x80"), std::string(12, '?'))
+      << "too long, surrogates, beyond Unicode";
+}
+
+TEST(Utf8, LengthOfTheFirstCharacter) {
+  EXPECT_EQ(text::utf8_length("a"), 1U);
+  EXPECT_EQ(text::utf8_length("é"), 2U);
+  EXPECT_EQ(text::utf8_length("東"), 3U);
+  EXPECT_EQ(text::utf8_length("\U0001F600"), 4U);
+  EXPECT_EQ(text::utf8_length("\x80"), 0U);
+  EXPECT_EQ(text::utf8_length("\xc3"), 0U);
+}
+
 }  // namespace packmpi

@@ -9,7 +9,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "comm/session.hpp"
+#include "base/memory.hpp"
+#include "comm/petsc.hpp"
 
 namespace packmpi::comm {
 namespace {
@@ -162,6 +163,45 @@ TEST(AgreeOn, LowestRankSpeaks) {
   }
 }
 
+TEST(EndTogether, WhatAllThrowIsOneError) {
+  const Comm comm(MPI_COMM_WORLD);
+  const Failure none = end_together(comm, [] {});
+  EXPECT_EQ(none.code, ExitCode::done);
+  const Failure agreed = end_together(
+      comm, [&] { fail_together(comm, ExitCode::stopped_early, "all"); }, 0.0);
+  EXPECT_EQ(agreed.code, ExitCode::stopped_early);
+  EXPECT_EQ(agreed.words, "all");
+  const Failure own = end_together(  // not agreed, but all ranks have one: the lowest is heard
+      comm, [&] { throw Error(ExitCode{2 + comm.rank() % 5}, std::to_string(comm.rank())); }, 60.0);
+  EXPECT_EQ(own.code, ExitCode{2});
+  EXPECT_EQ(own.words, "0");
+  const Failure other = end_together(
+      comm, [] { throw 7; }, 60.0);
+  EXPECT_EQ(other.code, ExitCode::numerical_failure);
+  EXPECT_EQ(other.words, "an exception of an unknown type");
+}
+
+TEST(EndTogether, WantOfMemorySaysHowMuchOfWhat) {
+  const Comm comm(MPI_COMM_WORLD);
+  expect_memory(std::int64_t{3} << 30);
+  const auto want = [](std::size_t bytes) {
+    const Occupation now("a test");
+    throw OutOfMemory(bytes);
+  };
+  const Failure alone = end_together(
+      comm, [&] { want(5U << 20U); }, 60.0);
+  EXPECT_EQ(alone.code, ExitCode::numerical_failure);
+  EXPECT_TRUE(
+      alone.words.starts_with("memory exhausted: 5242880 bytes (5.0 MiB) wanted by a test; this rank has held "))
+      << alone.words;
+  EXPECT_NE(alone.words.find(", the scene takes about 3.0 GiB of each rank; use fewer ranks a node"),
+            std::string::npos);
+  const Failure agreed = end_together(comm, [&] { agree_on(comm, [&] { want(1); }); });
+  EXPECT_EQ(agreed.code, ExitCode::numerical_failure);
+  EXPECT_TRUE(agreed.words.starts_with("memory exhausted: 1 bytes")) << agreed.words;
+  expect_memory(0);
+}
+
 /// The words of the complaint about PETSc options; "" if they are taken.
 std::string refusal(const std::string& options) {
   try {
@@ -174,11 +214,18 @@ std::string refusal(const std::string& options) {
 }
 
 TEST(Session, PetscTakesGoodOptionsAndNamesBadOnes) {
-  EXPECT_EQ(refusal("-packmpi_test_option 3"), "");
-  EXPECT_EQ(refusal(""), "");
-  EXPECT_NE(refusal(" 3 4").find("\" 3 4\""), std::string::npos);
-  EXPECT_NE(refusal("-a 1 -options_file x").find("-options_file"), std::string::npos);
-  EXPECT_NE(refusal("-prefix_push").find("-prefix_push"), std::string::npos);  // PETSc wants a prefix
+  for (const char* good : {"", "-implicit_snes_rtol 1e-9", "-implicit_ksp_gmres_restart 50 -implicit_pc_type jacobi",
+                           "-sf_type basic", "-implicit_snes_atol -1"}) {
+    EXPECT_EQ(refusal(good), "") << good;
+  }
+  EXPECT_NE(petsc_options_in_use().find("-implicit_pc_type jacobi"), std::string::npos) << petsc_options_in_use();
+  for (const char* bad :
+       {"3 4", "-prefix_push", "-options_file x", "-log_view :x", "-log_view x", "-info", "-info :x", "-dll_append x",
+        "-malloc_dump", "-on_error_attach_debugger", "-implicit_snes_view binary", "-implicit_ksp_view_mat :x",
+        "-implicit_pc_type python", "-implicit_pc_python_type a.b", "-implicit_snes_rtol /x", "-snes_rtol=\t1",
+        "-implicit_ksp_monitor_lg_residualnorm", "-implicit_snes_monitor_solution draw", "-viewer_binary_filename x"}) {
+    EXPECT_NE(refusal(bad), "") << bad;
+  }
 }
 
 }  // namespace
