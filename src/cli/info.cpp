@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/text.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 
@@ -20,8 +21,8 @@ std::string describe(const std::string& path, const pack::RunState& state) {
       "packmpi "
       "{} ({})\n",
       path, state.first_ids.size(), phases.at(static_cast<std::size_t>(state.phase)), state.steps, state.done,
-      state.count, state.dimension, state.rotation ? "with spin" : "without spin", state.serial, state.version,
-      state.git);
+      state.count, state.dimension, state.rotation ? "with spin" : "without spin", state.serial,
+      text::printable(state.version), text::printable(state.git));
 }
 
 // A number of the particle datasets' bits (FNV-1a over their bytes in turn): equal packs have equal ones.
@@ -39,12 +40,6 @@ class Bits {
 };
 
 std::string describe(const std::string& path, const pack::PackRows& pack) {
-  for (std::size_t k = 0; k < pack.id.size(); ++k) {
-    if (pack.id[k] != static_cast<GlobalId>(k)) {
-      throw Error(ExitCode::io_failure,
-                  fmt::format("{}: row {} has the id {}: the pack is damaged", path, k, pack.id[k]));
-    }
-  }
   Bits bits;
   bits.add(pack.id);
   bits.add(pack.position);
@@ -54,12 +49,12 @@ std::string describe(const std::string& path, const pack::PackRows& pack) {
   bits.add(pack.layer);
   bits.add(pack.contacts);
   return fmt::format("{}: a pack\n  {} particles in {}D, {} layers, {}\n  digest of the particles {:016x}\n", path,
-                     pack.id.size(), pack.dimension, pack.layer.empty() ? 0 : pack.layer.back() + 1,
+                     pack.id.size(), pack.dimension, pack.layer.empty() ? 0 : std::int64_t{pack.layer.back()} + 1,
                      pack.spin.empty() ? "without spin" : "with spin", bits.value());
 }
 
 std::string describe_here(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw Error(ExitCode::io_failure, path + ": there is no such file");
+  if (!std::filesystem::exists(path)) throw Error(ExitCode::io_failure, path + ": there is no such file");
   if (pack::is_pack(path)) return describe(path, pack::read_pack(path));
   const comm::Comm alone(MPI_COMM_SELF);
   const pack::RunState state = pack::read_state(path);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
 
 namespace packmpi::disk {
 namespace {
@@ -38,15 +40,37 @@ void reserve_open(const Descriptor& file, const std::string& path, std::int64_t 
   fail(path, fmt::format("{:.1f} MB needed", static_cast<double>(bytes) * 1e-6), shown);
 }
 
+[[noreturn]] void refuse_kind(const std::string& path, const std::string& flaw) {
+  throw Error(ExitCode::io_failure, fmt::format("cannot write {}: it {}; remove it", path, flaw));
+}
+
 }  // namespace
 
 void fail(const std::string& path, std::string_view what, int number) {
   throw Error(ExitCode::io_failure, fmt::format("cannot write {}: {}: {}", path, what, reason(number)));
 }
 
-Descriptor::Descriptor(const std::string& path, int flags)
-    : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, file_mode)) {
+Descriptor::Descriptor(const std::string& path, int flags) : path_(path), fd_(-1) {
+  const bool folder = (flags & O_DIRECTORY) != 0;
+  const int safely = folder ? 0 : O_NOFOLLOW | O_NONBLOCK | O_NOCTTY;
+  fd_ = ::open(path.c_str(), flags | safely | O_CLOEXEC, file_mode);
   if (fd_ < 0) fail(path, "open", errno);
+  struct stat there {};
+  if (folder || fstat(fd_, &there) != 0) return;
+  if (const std::string flaw = kind_flaw(there.st_mode); !flaw.empty()) {
+    ::close(fd_);  // the destructor does not run
+    refuse_kind(path, flaw);
+  }
+}
+
+Descriptor Descriptor::create(const std::string& path) {
+  struct stat there {};
+  if (lstat(path.c_str(), &there) == 0) {
+    const std::string flaw = kind_flaw(there.st_mode);
+    if (!flaw.empty() && !S_ISLNK(there.st_mode)) refuse_kind(path, flaw);
+    discard(path);
+  }
+  return {path, O_WRONLY | O_CREAT | O_EXCL};
 }
 
 Descriptor::~Descriptor() {
@@ -79,7 +103,7 @@ std::string folder_of(const std::string& path) {
 }
 
 void reserve(const std::string& path, std::int64_t bytes) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  Descriptor file = Descriptor::create(path);
   try {
     reserve_open(file, path, bytes);
   } catch (const Error&) {
@@ -91,6 +115,12 @@ void reserve(const std::string& path, std::int64_t bytes) {
 
 MemoryFile::MemoryFile(const std::string& for_what) : fd_(memfd_create("packmpi", MFD_CLOEXEC)) {
   if (fd_ < 0) fail(for_what, "a file in memory", errno);
+}
+
+void MemoryFile::expect(std::int64_t bytes, const std::string& for_what) const {
+  if (ftruncate(fd_, bytes) != 0 || ftruncate(fd_, 0) != 0) {
+    fail(for_what, fmt::format("{:.1f} MB needed", static_cast<double>(bytes) * 1e-6), errno);
+  }
 }
 
 MemoryFile::~MemoryFile() { ::close(fd_); }
@@ -139,7 +169,7 @@ void discard(const std::string& path) noexcept { ::unlink(path.c_str()); }
 void write_whole(const std::string& path, std::string_view text) {
   const std::string temporary = path + ".tmp";
   try {
-    Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    Descriptor file = Descriptor::create(temporary);
     file.write_at(std::as_bytes(std::span(text)), 0);
     file.close();
     commit(temporary, path);

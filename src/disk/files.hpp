@@ -9,10 +9,14 @@
 
 namespace packmpi::disk {
 
-/// An open file, closed on every path.
+/// An open file or folder, closed on every path. A file is a regular one and PATH its own name: neither symbolic links
+/// nor FIFOs and devices are followed, so that nothing that lies in a folder makes us write to another place, or wait.
 class Descriptor {
  public:
-  Descriptor(const std::string& path, int flags);  ///< throws Error(io_failure)
+  Descriptor(const std::string& path, int flags);  ///< one that is there; throws Error(io_failure)
+  /// A new file, empty, for writing. What a killed run or a link left under this name goes first; a folder, FIFO or
+  /// device is refused. Throws Error(io_failure).
+  [[nodiscard]] static Descriptor create(const std::string& path);
   ~Descriptor();
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -43,6 +47,9 @@ class MemoryFile {
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
+  /// Throws Error(io_failure) unless it may grow to `bytes`: HDF5 must not meet the process' limit on files (ulimit
+  /// -f), as a file that it cannot close ends the program at its exit. Takes no memory.
+  void expect(std::int64_t bytes, const std::string& for_what) const;
   /// The open file `fd` of this process is this one from now on. False: it cannot be.
   [[nodiscard]] bool stand_in_for(int fd) const noexcept;
   [[nodiscard]] std::int64_t size() const;  ///< [bytes], holes included; throws Error(io_failure)

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
 #include "disk/scatter.hpp"
 
 namespace packmpi::disk {
@@ -52,22 +54,18 @@ constexpr std::uint64_t stir(std::uint64_t x) {
 /// The file as numbers of bytes; what cannot be read is not there.
 class Bytes {
  public:
-  explicit Bytes(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
-    if (!file_) refuse_seal("it cannot be opened");
-    size_ = static_cast<std::int64_t>(file_.tellg());
+  explicit Bytes(const std::string& path) : file_(path) {
+    if (!file_.flaw().empty()) refuse_seal("it " + file_.flaw());
   }
-  [[nodiscard]] std::int64_t size() const { return size_; }
-  std::string read(std::int64_t begin, std::int64_t size) {
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    file_.seekg(begin);
-    file_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!file_) refuse_seal("it cannot be read to its end");
-    return bytes;
+  [[nodiscard]] std::int64_t size() const { return file_.size(); }
+  [[nodiscard]] std::string read(std::int64_t begin, std::int64_t size) const {
+    std::optional<std::string> bytes = file_.read(begin, size);
+    if (!bytes || static_cast<std::int64_t>(bytes->size()) != size) refuse_seal("it cannot be read to its end");
+    return std::move(*bytes);
   }
 
  private:
-  std::ifstream file_;
-  std::int64_t size_ = 0;
+  RegularFile file_;
 };
 
 template <class Number>
@@ -103,7 +101,7 @@ std::vector<SealedRows> in_order(const Seal& seal) {
   return columns;
 }
 
-Seal read_seal(Bytes& file) {
+Seal read_seal(const Bytes& file) {
   if (file.size() < tail_bytes) refuse_seal();
   const std::string tail = file.read(file.size() - tail_bytes, tail_bytes);
   if (!tail.ends_with(mark)) refuse_seal();
@@ -177,7 +175,7 @@ std::string to_bytes(const Seal& seal) {
 }
 
 Seal check_frame(const std::string& path) {
-  Bytes file(path);
+  const Bytes file(path);
   Seal seal = read_seal(file);
   const auto read = [&file](std::int64_t begin, std::int64_t size) { return file.read(begin, size); };
   if (frame_digest(seal, read) != seal.frame) refuse_contents();
@@ -185,7 +183,7 @@ Seal check_frame(const std::string& path) {
 }
 
 std::vector<std::int64_t> row_digests(const std::string& path, const Seal& seal, Rank rank, int ranks) {
-  Bytes file(path);
+  const Bytes file(path);
   std::vector<std::int64_t> digests;
   for (const SealedRows& column : seal.columns) {
     const IdBlocks share{column.rows, ranks};

@@ -16,6 +16,8 @@
 namespace packmpi::disk {
 namespace {
 
+constexpr std::int64_t frame_bytes = std::int64_t{1} << 20;  // more than attributes and small tables take
+
 std::int64_t bytes_of_rows(const std::vector<h5::Column>& plan) {
   std::int64_t bytes = 0;
   for (const h5::Column& column : plan) bytes += static_cast<std::int64_t>(column.slab.total * h5::row_bytes(column));
@@ -41,6 +43,7 @@ void together(const comm::Comm& comm, const std::string& path, Step&& step) {
 Seal make_frame(const std::string& path, const std::vector<h5::Column>& plan, const std::function<void(hid_t)>& frame) {
   reserve(path, bytes_of_rows(plan));
   const MemoryFile memory(path);
+  memory.expect(bytes_of_rows(plan) + frame_bytes, path);
   h5::Handle file = h5::create_file(path, memory);
   frame(file.get());
   Seal seal;
@@ -132,7 +135,7 @@ void write_whole_file(const comm::Comm& comm, const std::string& path, const std
     together(comm, path, [&] {
       if (comm.rank() == 0) commit(temporary, path);
     });
-  } catch (const Error&) {  // agreed: every rank is here, and has let go of the file
+  } catch (const comm::AgreedError&) {  // every rank is here, and has let go of the file
     if (comm.rank() == 0) discard(temporary);
     throw;
   }

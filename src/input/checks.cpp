@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/elementary.hpp"
+#include "comm/petsc.hpp"
 #include "input/grading.hpp"
 #include "input/radius_range.hpp"
 #include "input/rhythm.hpp"
@@ -315,6 +316,11 @@ void check_checkpoint(const Case& scene) {
                            toml_string(every)));
 }
 
+void check_petsc(const Case& scene) {
+  const std::string flaw = comm::petsc_options_flaw(scene.in.petsc.options);
+  if (!flaw.empty()) scene.refuse("petsc.options", flaw);
+}
+
 }  // namespace
 
 void check_radii(const Input& in, const Document& document) { check_distribution({in, document}); }
@@ -331,6 +337,7 @@ void check(const Input& in, const Document& document) {
   check_memory(scene);
   check_theta(scene);
   check_checkpoint(scene);
+  check_petsc(scene);
 }
 
 }  // namespace packmpi::input

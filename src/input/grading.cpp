@@ -35,8 +35,9 @@ std::string without_blanks(std::string text) {
 /// The unit of "diameter_mm,percent_passing".
 std::string unit_of(const std::string& head, const Line& line) {
   constexpr std::string_view begin = "diameter_";
+  // Not told: the scene may be a stranger's, and the file one that is none of his business.
   const std::string words =
-      fmt::format("is {}; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)", toml_string(head));
+      "is no grading curve; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)";
   if (!head.starts_with(begin) || !head.ends_with(head_end)) line.refuse(words);
   std::string unit = head.substr(begin.size(), head.size() - begin.size() - head_end.size());
   if (!parse_scalar("1 " + unit, length).value) line.refuse(words);

@@ -302,7 +302,7 @@ std::vector<Key> program_keys() {
     word("output.analysis", at(&Input::output, &Output::analysis), "false", "Measure the pack inside when it is done, as `packmpi analyze` would: NAME.analysis.json."),
     real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
          "Simulated time between rows of NAME.steps.csv; 0: a row each step."),
-    word("petsc.options", at(&Input::petsc, &Petsc::options), R"("")", "Passed to PETSc as they are: \"-log_view\"."),
+    word("petsc.options", at(&Input::petsc, &Petsc::options), R"("")", "Options for PETSc's solvers and reports, none that names a file: \"-log_view\", \"-implicit_snes_rtol 1e-9\"."),
   };
 }
 // clang-format on

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
 #include "base/text.hpp"
 #include "input/checks.hpp"
 #include "input/document.hpp"
@@ -139,16 +137,13 @@ std::string effective(Input in) {
 
 std::string file_text(const std::string& path, std::string_view what) {
   const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
-  if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
-    refuse(fmt::format("is a folder; give {}", what));
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(fmt::format("cannot be opened ({}); check the path", std::generic_category().message(errno)));
-  std::string text(Document::longest_file + 1, '\0');  // one byte more is refused; /dev/zero has no end
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) refuse("cannot be read to its end; check the file system");
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
+  const RegularFile file(path);
+  const std::string& flaw = file.flaw();
+  if (!flaw.empty()) refuse(flaw + (flaw.starts_with("cannot") ? "; check the path" : fmt::format("; give {}", what)));
+  const std::optional<std::string> text = file.read(0, Document::longest_file + 1);
+  if (!text) refuse("cannot be read to its end; check the file system");
+  if (text->size() > Document::longest_file) refuse(fmt::format("is longer than 1 MiB; is it {}?", what));
+  return *text;
 }
 
 Document with_changes(const std::string& text, const std::string& path, const Overrides& overrides) {
@@ -159,9 +154,20 @@ Document with_changes(const std::string& text, const std::string& path, const Ov
 
 constexpr std::string_view curve_file_key = "particles.radius.diameter_curve_file";
 
+// A scene may be a stranger's: it names files beside it only.
+void check_curve_name(const Document& document, const std::string& name) {
+  const std::filesystem::path path(name);
+  const bool leaves = path.is_absolute() || std::ranges::find(path, "..") != path.end();
+  if (!leaves) return;
+  fail(document.place(curve_file_key), curve_file_key,
+       fmt::format("is {}; a curve lies in the scene's folder or below it: give a path from there, without \"..\"",
+                   toml_string(name)));
+}
+
 /// Puts the CSV file's points where the scene's own would stand.
 void take_curve(const Document& document, const std::optional<CurveFile>& file, Radius& radius) {
   if (radius.diameter_curve_file.empty()) return;
+  check_curve_name(document, radius.diameter_curve_file);
   if (!radius.diameter_curve.empty()) {
     fail(document.place(curve_file_key), curve_file_key, "there is a diameter_curve, too; remove one of them");
   }
@@ -181,6 +187,7 @@ std::optional<CurveFile> named_curve(const std::string& text, const std::string&
   const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
   const bool both = document.find("particles.radius.diameter_curve") != nullptr;  // parse() refuses that
   if (name == nullptr || name->empty() || both) return std::nullopt;
+  check_curve_name(document, *name);
   const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
   return CurveFile{file, file_text(file, "a CSV file")};
 }

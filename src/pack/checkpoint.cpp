@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/memory.hpp"
 #include "disk/scatter.hpp"
 #include "disk/whole_file.hpp"
 #include "pack/run_state.hpp"
@@ -97,6 +98,7 @@ void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const Ru
 
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
                       const RunState& state) {
+  const Occupation now("the checkpoint on its way to the file");
   const disk::h5::Quiet quiet;
   const std::uint64_t digest = digest_of(comm, stores);
   const disk::IdBlocks blocks{state.count, comm.size()};

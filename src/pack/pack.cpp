@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/memory.hpp"
 #include "disk/whole_file.hpp"
 #include "pack/pack_plan.hpp"
 
@@ -9,6 +10,7 @@ namespace packmpi::pack {
 
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
                 const report::RunRecord& record) {
+  const Occupation now("the pack on its way to the file");
   const disk::h5::Quiet quiet;
   const PackBlock block = make_block(comm, parts);
   const std::vector<disk::h5::Column> plan = plan_columns(block);

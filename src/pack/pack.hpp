@@ -11,6 +11,7 @@
 #include "observe/measure.hpp"
 #include "particles/store.hpp"
 #include "report/record.hpp"
+#include "scene/scene.hpp"
 
 namespace packmpi::pack {
 
@@ -64,6 +65,11 @@ struct PackSlice {
 };
 /// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
+
+/// Throws Error(io_failure), words without the path, unless all particles of `rows` fit into `scene`: of its
+/// dimension, no larger than its largest, within its floor and walls but for a radius, and not above 10 times the
+/// height that it is made for. What lies beyond no grid is made for. Local.
+void check_in_scene(const PackRows& rows, const scene::Scene& scene);
 
 /// Rank-local. Whether PATH is a pack, valid or not, rather than another file.
 [[nodiscard]] bool is_pack(const std::string& path);

@@ -2,99 +2,70 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.hpp"
 #include "pack/former_names.hpp"
 
 namespace packmpi::pack {
 namespace {
 
-/// Sizes of a dataset's axes.
-std::vector<hsize_t> extent(hid_t dataset) {
-  const disk::h5::Handle space(H5Dget_space(dataset), H5Sclose, "ask for a data space");
-  const int axes = H5Sget_simple_extent_ndims(space.get());
-  if (axes < 0) disk::h5::fail("ask for an extent");
-  std::vector<hsize_t> sizes(static_cast<std::size_t>(axes));
-  disk::h5::check(H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr), "ask for an extent");
-  return sizes;
+[[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::io_failure, words); }
+
+bool finite(const Vec3& v) {
+  return std::ranges::all_of(v, [](double x) { return std::isfinite(x); });
 }
 
-disk::h5::Handle open_attribute(hid_t file, const char* object, const char* name) {
-  return {H5Aopen_by_name(file, object, name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-          fmt::format("open the attribute {} of {}", name, object)};
+/// What keeps row k from being a particle, "" if nothing does.
+std::string flaw_of(const PackRows& rows, std::size_t k) {
+  if (!finite(rows.position[k])) return "has a position that is no number";
+  if (!finite(rows.velocity[k])) return "has a velocity that is no number";
+  if (!rows.spin.empty() && !finite(rows.spin[k])) return "has a spin that is no number";
+  if (!std::isfinite(rows.radius[k]) || !(rows.radius[k] > 0.0))
+    return fmt::format("has the radius {}", rows.radius[k]);
+  if (rows.layer[k] < 0) return fmt::format("is of layer {}", rows.layer[k]);
+  if (rows.contacts[k] < 0) return fmt::format("has {} contacts", rows.contacts[k]);
+  return "";
 }
 
-/// An attribute that is one number.
-template <class T>
-T read_number(hid_t file, const char* object, const char* name) {
-  const disk::h5::Handle attribute = open_attribute(file, object, name);
-  const disk::h5::Handle space(H5Aget_space(attribute.get()), H5Sclose, "ask for a data space");
-  if (H5Sget_simple_extent_npoints(space.get()) != 1) {
-    throw Error(ExitCode::io_failure, fmt::format("the attribute {} of {} is no single number", name, object));
+void check_particles(const PackRows& rows, std::int64_t first) {
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    const std::int64_t row = first + static_cast<std::int64_t>(k);
+    if (rows.id[k] != row) refuse(fmt::format("row {} has the id {}: the pack is damaged", row, rows.id[k]));
+    if (const std::string flaw = flaw_of(rows, k); !flaw.empty()) refuse(fmt::format("particle {} {}", row, flaw));
   }
-  T value{};
-  disk::h5::check(H5Aread(attribute.get(), disk::h5::type_of<T>(), &value), fmt::format("read the attribute {}", name));
-  return value;
-}
-
-/// Which rows of how many.
-struct Range {
-  std::int64_t total, begin;
-  std::size_t count;
-};
-
-/// Rows of a dataset; `Row` is a T or an array of T.
-template <class T, class Row>
-std::vector<Row> read_rows(hid_t file, const std::string& path, const Range& range) {
-  constexpr hsize_t width = disk::h5::row_width<T, Row>;
-  const disk::h5::Handle dataset = disk::h5::open_dataset(file, path);
-  std::vector<hsize_t> expected{static_cast<hsize_t>(range.total)};
-  if (width > 1) expected.push_back(width);
-  if (extent(dataset.get()) != expected) {
-    throw Error(ExitCode::io_failure,
-                fmt::format("{} has another shape than a pack of {} particles", path, range.total));
-  }
-  std::vector<Row> rows(range.count);
-  if (range.count == 0) return rows;
-  const std::array<hsize_t, 2> start{static_cast<hsize_t>(range.begin), 0};
-  const std::array<hsize_t, 2> count{range.count, width};
-  const disk::h5::Handle there(H5Dget_space(dataset.get()), H5Sclose, "ask for a data space");
-  disk::h5::check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-                  "select rows");
-  const hsize_t elements = range.count * width;
-  const disk::h5::Handle here(H5Screate_simple(1, &elements, nullptr), H5Sclose, "make a data space");
-  disk::h5::check(H5Dread(dataset.get(), disk::h5::type_of<T>(), here.get(), there.get(), H5P_DEFAULT, rows.data()),
-                  "read " + path);
-  return rows;
 }
 
 }  // namespace
 
-PackFile::PackFile(const std::string& path)
-    : seal_(disk::check_frame(path)), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it") {
-  version_ = read_number<std::int64_t>(file_.get(), "/", "format_version");
+PackFile::PackFile(const std::string& path) : file_(path) {
+  version_ = file_.number<std::int64_t>("/", "format_version");
   if (version_ < oldest_pack_version || version_ > pack_version) {
-    throw Error(ExitCode::io_failure,
-                fmt::format("it has format version {}, and this packmpi reads {} to {}: use the packmpi that wrote it",
-                            version_, oldest_pack_version, pack_version));
+    refuse(fmt::format("it has format version {}, and this packmpi reads {} to {}: use the packmpi that wrote it",
+                       version_, oldest_pack_version, pack_version));
   }
-  dimension_ = static_cast<int>(read_number<std::int64_t>(file_.get(), "/summary", "dimension"));
-  const std::vector<hsize_t> sizes = extent(disk::h5::open_dataset(file_.get(), "/particles/id").get());
-  if (sizes.size() == 1) count_ = static_cast<std::int64_t>(sizes[0]);  // any other shape is refused by the read
-  rotation_ = H5Lexists(file_.get(), "/particles/spin", H5P_DEFAULT) > 0;
+  const auto dimension = file_.number<std::int64_t>("/summary", "dimension");
+  if (dimension != 2 && dimension != 3) refuse(fmt::format("it is a pack in {} dimensions", dimension));
+  dimension_ = static_cast<int>(dimension);
+  const std::vector<hsize_t> sizes = file_.extent<std::int64_t>("/particles/id");
+  if (sizes.size() != 1) refuse("/particles/id has another shape than it should");
+  count_ = static_cast<std::int64_t>(sizes[0]);
+  rotation_ = file_.has("/particles/spin");
 }
 
 PackRows PackFile::rows(std::int64_t begin, std::int64_t count) const {
-  const Range range{count_, begin, static_cast<std::size_t>(count)};
-  const hid_t file = file_.get();
+  const disk::Range range{count_, begin, count};
   PackRows pack;
   pack.dimension = dimension_;
-  pack.id = read_rows<std::int64_t, GlobalId>(file, "/particles/id", range);
-  pack.position = read_rows<double, Vec3>(file, "/particles/position", range);
-  pack.radius = read_rows<double, double>(file, "/particles/radius", range);
-  pack.velocity = read_rows<double, Vec3>(file, "/particles/velocity", range);
-  if (rotation_) pack.spin = read_rows<double, Vec3>(file, "/particles/spin", range);
-  pack.layer = read_rows<std::int32_t, std::int32_t>(file, "/particles/layer", range);
-  pack.contacts = read_rows<std::int32_t, std::int32_t>(file, "/particles/contacts", range);
+  pack.id = file_.rows<std::int64_t, GlobalId>("/particles/id", range);
+  pack.position = file_.rows<double, Vec3>("/particles/position", range);
+  pack.radius = file_.rows<double, double>("/particles/radius", range);
+  pack.velocity = file_.rows<double, Vec3>("/particles/velocity", range);
+  if (rotation_) pack.spin = file_.rows<double, Vec3>("/particles/spin", range);
+  pack.layer = file_.rows<std::int32_t, std::int32_t>("/particles/layer", range);
+  pack.contacts = file_.rows<std::int32_t, std::int32_t>("/particles/contacts", range);
+  check_particles(pack, begin);
   return pack;
 }
 
@@ -103,22 +74,10 @@ std::string PackFile::scene() const {
   return version_ < pack_version ? scene_in_present_names(scene) : scene;
 }
 
-std::string PackFile::text(const char* object, const char* attribute) const {
-  const disk::h5::Handle open = open_attribute(file_.get(), object, attribute);
-  const disk::h5::Handle type(H5Aget_type(open.get()), H5Tclose, "ask for a type");
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
-    throw Error(ExitCode::io_failure, fmt::format("the attribute {} of {} is no text", attribute, object));
-  }
-  char* words = nullptr;
-  disk::h5::check(H5Aread(open.get(), type.get(), static_cast<void*>(&words)),
-                  fmt::format("read the attribute {}", attribute));
-  std::string text = words == nullptr ? "" : words;
-  H5free_memory(words);
-  return text;
-}
+std::string PackFile::text(const char* object, const char* attribute) const { return file_.text(object, attribute); }
 
 double PackFile::number(const char* object, const char* attribute) const {
-  return read_number<double>(file_.get(), object, attribute);
+  return file_.number<double>(object, attribute);
 }
 
 }  // namespace packmpi::pack

@@ -3,33 +3,31 @@
 #include <cstdint>
 #include <string>
 
-#include "disk/hdf5.hpp"
-#include "disk/seal.hpp"
+#include "disk/sealed_file.hpp"
 #include "pack/pack.hpp"
 
 namespace packmpi::pack {
 
-/// Rank-local; several ranks may each have the same file open. Errors: Error(io_failure), HDF5's words without the
-/// path.
+/// Rank-local; several ranks may each have the same file open. Errors: Error(io_failure), words without the path.
 class PackFile {
  public:
-  /// Opens it, once all but its rows is known to be what was written; checks the format version and the shape of
-  /// /particles/id. Whoever reads rows calls check_rows() with seal() before.
+  /// Opens it, once all but its rows is known to be what was written; checks the format version, the dimension and the
+  /// shape of /particles/id. Whoever reads rows calls check_rows() with seal() before.
   explicit PackFile(const std::string& path);
 
-  [[nodiscard]] const disk::Seal& seal() const noexcept { return seal_; }
+  [[nodiscard]] const disk::Seal& seal() const noexcept { return file_.seal(); }
   [[nodiscard]] int dimension() const noexcept { return dimension_; }
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }  ///< particles
   [[nodiscard]] bool rotation() const noexcept { return rotation_; }    ///< spins are there
-  /// Rows [begin, begin + count) of all particle datasets, whose shapes are checked. Cost: O(count).
+  /// Rows [begin, begin + count) of all particle datasets. Their shapes are checked, and that they can be particles:
+  /// ids in order, numbers finite, radii above 0. Cost: O(count).
   [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
   [[nodiscard]] std::string scene() const;  ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;
   [[nodiscard]] double number(const char* object, const char* attribute) const;
 
  private:
-  disk::Seal seal_;
-  disk::h5::Handle file_;
+  disk::SealedFile file_;
   std::int64_t version_ = 0;
   int dimension_ = 3;
   std::int64_t count_ = 0;

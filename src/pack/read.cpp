@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <fstream>
-
+#include "base/regular_file.hpp"
 #include "disk/scatter.hpp"
 #include "disk/seal.hpp"
 #include "pack/pack_file.hpp"
@@ -11,26 +10,21 @@ namespace {
 
 /// Whether the beginning of a damaged file names this format and not the other.
 bool looks_like_pack(const std::string& path) {
-  constexpr std::size_t look = 65536;
-  std::string begin(look, '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  constexpr std::int64_t look = 65536;
+  const RegularFile file(path);
+  const std::string begin = file.flaw().empty() ? file.read(0, look).value_or("") : "";
   return begin.find("packmpi-pack") != std::string::npos && begin.find("packmpi-checkpoint") == std::string::npos;
 }
 
 }  // namespace
 
 bool is_pack(const std::string& path) {
+  const disk::h5::Quiet quiet;
   try {
-    (void)disk::check_frame(path);
-  } catch (const Error&) {  // nothing for HDF5 to open
+    return disk::SealedFile(path).has("/summary");
+  } catch (const Error&) {  // nothing for HDF5 to read
     return looks_like_pack(path);
   }
-  const disk::h5::Quiet quiet;
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) return false;
-  const bool pack = H5Lexists(file, "/summary", H5P_DEFAULT) > 0;
-  H5Fclose(file);
-  return pack;
 }
 
 namespace {

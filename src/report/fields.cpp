@@ -72,6 +72,7 @@ std::vector<disk::Field> provenance_fields(const RunRecord& r) {
           {"architecture", "", r.architecture},
           {"scene_file", "", r.scene_file},
           {"effective_input", "", r.effective_input},
+          {"petsc_options", "", r.petsc_options},
           {"seed", "", r.seed},
           {"ranks", "", std::int64_t{r.ranks}},
           {"decomposition", "", r.decomposition},

@@ -85,6 +85,7 @@ struct RunRecord {
   // how (not the same from run to run)
   int ranks = 1;
   std::string decomposition, version, git, compiler, architecture;
+  std::string petsc_options;  ///< all that PETSc had, whoever gave them
   double wall_seconds = 0.0;
   double particle_steps_per_second = 0.0;
   double bytes_per_particle = 0.0;  ///< worst rank

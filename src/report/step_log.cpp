@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "base/regular_file.hpp"
 #include "disk/files.hpp"
 #include "report/report.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 /// The whole lines of a series up to and with step `last`; "" if there is none.
 std::string rows_until(const std::string& path, std::int64_t last) {
+  if (!RegularFile(path).flaw().empty()) return "";
   std::ifstream file(path);
   std::string kept;
   for (std::string line; std::getline(file, line) && !file.eof();) {  // eof: the line was cut off
@@ -33,8 +35,12 @@ StepLog::StepLog(const comm::Comm& comm, const std::string& path, std::optional<
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0) return;
     const std::string kept = last_step ? rows_until(path, *last_step) : "";
-    if (!kept.empty()) disk::write_whole(path, kept);
-    file_.open(path, kept.empty() ? std::ios::trunc : std::ios::app);
+    if (kept.empty()) {
+      disk::Descriptor::create(path).close();  // never through a link
+    } else {
+      disk::write_whole(path, kept);
+    }
+    file_.open(path, std::ios::app);
     if (!file_) disk::fail(path, "open", errno);
     if (!kept.empty()) return;
     file_ << "layer,step,time [s],particles,kinetic energy [J],max speed [m/s],top [m],mean height [m],max force "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/memory.hpp"
 #include "disk/text_file.hpp"
 #include "input/read.hpp"
 #include "pack/pack.hpp"
@@ -40,11 +41,20 @@ void take_share(const pack::PackRows& rows, particles::Store& store) {
 }  // namespace
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
+  const Occupation now("the analysis of the pack");
   pack::check_pack(comm, path);
   pack::PackSlice slice;
-  comm::agree_on(comm, [&] { slice = pack::read_slice(path, comm.rank(), comm.size()); });
   double range = 0.0;
-  const scene::Scene scene = reaching_scene(slice.scene, path, range);
+  scene::Scene scene;
+  comm::agree_on(comm, [&] {
+    slice = pack::read_slice(path, comm.rank(), comm.size());
+    scene = reaching_scene(slice.scene, path, range);
+    try {
+      pack::check_in_scene(slice.rows, scene);
+    } catch (const Error& error) {
+      throw Error(error.code(), "cannot read " + path + ": " + error.what());
+    }
+  });
   Bed bed(comm, scene);
   take_share(slice.rows, bed.store);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comm/petsc.hpp"
 #include "dynamics/kernel.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
@@ -63,6 +64,7 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.git = git_id();
   record.compiler = compiler();
   record.architecture = dynamics::kernel_architecture();
+  record.petsc_options = comm::petsc_options_in_use();
   return record;
 }
 

@@ -131,16 +131,25 @@ TEST(BadInput, GradingFiles) {
   const std::string head = "diameter_mm,percent_passing\n";
   EXPECT_EQ(of(""), "g.csv:0: is empty; the first line must be \"diameter_mm,percent_passing\"");
   EXPECT_EQ(of("# my sand\n1,2\n"),
-            "g.csv:2: is \"1,2\"; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)");
-  EXPECT_EQ(
-      of("diameter_kg,percent_passing\n"),
-      "g.csv:1: is \"diameter_kg,percent_passing\"; the first line must be \"diameter_mm,percent_passing\" (or _m, "
-      "_cm, _um)");
+            "g.csv:2: is no grading curve; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)");
+  EXPECT_EQ(of("diameter_kg,percent_passing\n"),
+            "g.csv:1: is no grading curve; the first line must be \"diameter_mm,percent_passing\" (or _m, "
+            "_cm, _um)");
   EXPECT_EQ(of(head + "1;2\n"), "g.csv:2: is \"1;2\"; give two numbers with a comma");
   EXPECT_EQ(of(head + "1,2\n\n4,x\n"), "g.csv:4: \"x\" is not a number; write 4.75,63.2 (a point, no units)");
   EXPECT_EQ(of(head + "1,2,3\n"), "g.csv:2: \"2,3\" is not a number; write 4.75,63.2 (a point, no units)");
   EXPECT_EQ(of(head + "-1,2\n"), "g.csv:2: a diameter must be above 0");
   EXPECT_EQ(of(head + "1,200\n"), "g.csv:2: 200 percent; give 0 to 100");
+}
+
+TEST(BadInput, AGradingFileLiesBesideTheScene) {
+  for (const std::string name : {"/etc/passwd", "../a.csv", "a/../../b.csv", ".."}) {
+    const std::string set =
+        "particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = \"" + name + "\" }";
+    EXPECT_EQ(complaint([&] { (void)named_curve("[particles]\n", "x/a.toml", {{set}}); }),
+              "--set " + set + ": particles.radius.diameter_curve_file: is \"" + name +
+                  "\"; a curve lies in the scene's folder or below it: give a path from there, without \"..\"");
+  }
 }
 
 TEST(BadInput, AGradingFileThatIsNotThere) {
