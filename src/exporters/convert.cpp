@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "disk/files.hpp"
 #include "exporters/formats.hpp"
+#include "exporters/quote.hpp"
 #include "exporters/rows_file.hpp"
 #include "exporters/specimen.hpp"
 #include "input/read.hpp"
@@ -45,6 +46,7 @@ Names name_files(ConvertRequest request, const FormatWords& words) {
     if (path.extension() == ".hdf") path.replace_extension();
     request.file = path.string() + words.ending;
   }
+  check_file_name(std::filesystem::path(request.file).filename().string());
   if (*words.companion == '\0') return {request, ""};
   const std::string companion = std::filesystem::path(request.file).replace_extension(words.companion).string();
   if (companion == request.file) {
@@ -113,7 +115,7 @@ void write_files(const comm::Comm& comm, const Names& names, const Document& doc
       if (!names.companion.empty()) disk::write_whole(names.companion, document.companion);
       disk::commit(temporary, path);
     });
-  } catch (const Error&) {  // agreed: every rank is here
+  } catch (const comm::AgreedError&) {  // every rank is here
     if (comm.rank() == 0) disk::discard(temporary);
     throw;
   }
@@ -142,7 +144,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });
-  const Selection selection(*file, scene.box, request);
+  const Selection selection(*file, scene, request);
   const Specimen specimen = survey(comm, *file, selection, names.request, scene);
   write_files(comm, names, format.make(specimen), selection);
   Converted done{{names.request.file}, specimen.count, specimen.volume};

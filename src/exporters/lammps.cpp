@@ -3,6 +3,7 @@
 
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::lammps {
 namespace {
@@ -56,7 +57,7 @@ std::string in_file(const Specimen& s) {
       "read_data       ${{data}}\n\n"
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n"
       "pair_style      granular\npair_coeff      * * {}\n",
-      s.file, s.flat() ? 2 : 3, boundary_words(s), s.scene.skin, contact(s, 0.5, in.contact.friction));
+      lammps_word(s.file), s.flat() ? 2 : 3, boundary_words(s), s.scene.skin, contact(s, 0.5, in.contact.friction));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
   text += drag(s);

@@ -6,6 +6,7 @@
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::lethe {
 namespace {
@@ -73,7 +74,7 @@ std::string parameters(const Specimen& s) {
       "subsection insertion info\n  set insertion method = file\n  set list of input files = {}\n  set insertion "
       "frequency = 1000000\nend\n",
       s.flat() ? 2 : 3, dt, 200.0 * dt, s.flat() ? fmt::format("0.0, {}, 0.0", -g) : fmt::format("0.0, 0.0, {}", -g),
-      properties(s), s.file);
+      properties(s), lethe_file(s.file));
   return text + mesh(s) + periods(s);
 }
 

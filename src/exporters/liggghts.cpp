@@ -3,6 +3,7 @@
 
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::liggghts {
 namespace {
@@ -57,8 +58,8 @@ std::string in_file(const Specimen& s) {
       "yes\nboundary       "
       "{}\nnewton          off\ncommunicate     single vel yes\nread_data       ${{data}}\n\n"
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n",
-      s.file, in.contact.damping_ratio > 0.0 ? "no_history" : "history", s.flat() ? 2 : 3, boundary_words(s),
-      s.scene.skin);
+      liggghts_word(s.file), in.contact.damping_ratio > 0.0 ? "no_history" : "history", s.flat() ? 2 : 3,
+      boundary_words(s), s.scene.skin);
   text += material(s);
   text += fmt::format("pair_style      gran model hertz tangential ${{tangential}}{}\npair_coeff      * *\n", limit(s));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,

@@ -5,6 +5,7 @@
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::mercurydpm {
 namespace {
@@ -81,9 +82,10 @@ std::string driver(const Specimen& s) {
   text += species(s);
   text += fmt::format(
       "  problem.setGravity(Vec3D({}));\n"
-      "  if (!problem.readDataFile({:?}, {})) return 1;\n"
+      "  if (!problem.readDataFile({}, {})) return 1;\n"
       "  InfiniteWall wall;\n  wall.setSpecies(species);\n  PeriodicBoundary period;\n",
-      s.flat() ? fmt::format("0.0, {}, 0.0", -g) : fmt::format("0.0, 0.0, {}", -g), s.file, s.flat() ? 8 : 14);
+      s.flat() ? fmt::format("0.0, {}, 0.0", -g) : fmt::format("0.0, 0.0, {}", -g), cpp_string(s.file),
+      s.flat() ? 8 : 14);
   text += walls(s);
   return text + fmt::format(
                     "  std::cout << problem.particleHandler.getNumberOfObjects() << \" particles, mass \" << "

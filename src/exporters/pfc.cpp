@@ -3,6 +3,7 @@
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::pfc {
 namespace {
@@ -60,13 +61,13 @@ std::string script(const Specimen& s) {
          fmt::format(
              "# In PFC's Python: the commands of the data file, balls by the fast way. Ids are then PFC's own.\n"
              "import itasca\n\n"
-             "for line in open({:?}):\n"
+             "for line in open({}, encoding=\"utf-8\"):\n"
              "    words = line.split()\n"
              "    if words[:2] == [\"ball\", \"create\"]:\n"
              "        itasca.ball.create(float(words[5]), tuple(float(word) for word in words[7::2]))\n"
              "    elif words and not line.startswith(\";\"):\n"
              "        itasca.command(line)\n",
-             s.file);
+             python_string(s.file));
 }
 
 void ball_3d(Text& out, const Outgoing& p) {

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "disk/scatter.hpp"
+#include "exporters/quote.hpp"
 #include "packmpi/version.hpp"
 
 namespace packmpi::exporters {
@@ -19,16 +20,6 @@ constexpr std::int64_t batch_rows = 1 << 14;
 constexpr double volume_quanta = 0x1p32;  // of the largest sphere: sums in 64 bits are exact for 2^30 particles
 
 double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
-
-bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-void check(const pack::ParticleRow& row, double largest) {
-  const bool valid =
-      finite(row.position) && finite(row.velocity) && finite(row.spin) && row.radius > 0.0 && row.radius <= largest;
-  if (!valid) {
-    throw Error(ExitCode::io_failure, fmt::format("particle {} has numbers that cannot be", row.id - 1));
-  }
-}
 
 pack::ParticleRow row_of(const pack::PackRows& rows, std::size_t k) {
   return {rows.id[k],     rows.position[k], rows.velocity[k], rows.spin.empty() ? Vec3{} : rows.spin[k],
@@ -51,7 +42,6 @@ Found look(const comm::Comm& comm, const Selection& selection, const scene::Scen
   found.lowest.fill(infinity);
   found.highest.fill(-infinity);
   selection.visit(share.begin(comm.rank()), share.begin(comm.rank() + 1), [&](const pack::ParticleRow& row) {
-    check(row, scene.sizes.largest());
     ++found.count;
     found.quanta += std::llround(sphere(row.radius) * scale);
     found.top = std::max(found.top, row.position[up] + row.radius);
@@ -70,46 +60,43 @@ std::string axis_words(const Specimen& s, std::size_t axis) {
   return fmt::format("{} 0 to {} {}", name, s.size[axis], s.periodic(axis) ? "periodic" : "between walls");
 }
 
-// A file name may hold anything; a comment line may not.
-std::string printable(std::string words) {
-  for (char& c : words) {
-    if (static_cast<unsigned char>(c) < ' ') c = '?';
-  }
-  return words;
-}
-
 }  // namespace
 
 bool Selection::kept(const pack::ParticleRow& row) const {
-  const double centre = row.position[static_cast<std::size_t>(box_.vertical())];
+  const double centre = row.position[static_cast<std::size_t>(scene_->box.vertical())];
   switch (trim_) {
     case Trim::drop:
-      return centre + row.radius <= box_.height();
+      return centre + row.radius <= scene_->box.height();
     case Trim::cut:
-      return centre <= box_.height();
+      return centre <= scene_->box.height();
     case Trim::none:
       break;
   }
   return true;
 }
 
-void Selection::visit_batch(std::int64_t copy, std::int64_t first, std::int64_t count,
+pack::PackRows Selection::read(std::int64_t first, std::int64_t count) const {
+  try {
+    pack::PackRows rows = file_->rows(first, count);
+    pack::check_in_scene(rows, *scene_);
+    return rows;
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("cannot read {}: {}", pack_, error.what()));
+  }
+}
+
+void Selection::visit_batch(std::int64_t copy, const pack::PackRows& rows,
                             const std::function<void(const pack::ParticleRow&)>& take) const {
   const std::array<std::int64_t, 2> at{copy % copies_[0], copy / copies_[0]};
-  const pack::PackRows rows = file_->rows(first, count);
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
     pack::ParticleRow row = row_of(rows, k);
-    if (row.id != first + static_cast<std::int64_t>(k)) {
-      throw Error(ExitCode::io_failure, fmt::format("row {} has the id {}: the pack is damaged",
-                                                    first + static_cast<std::int64_t>(k), row.id));
-    }
     if (!kept(row)) continue;
     row.id += copy * file_->count() + 1;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (at[axis] == 0) continue;
-      const double end = box_.size[axis] * copies_[axis];  // rounding must not reach it
-      row.position[axis] =
-          std::min(row.position[axis] + static_cast<double>(at[axis]) * box_.size[axis], std::nextafter(end, 0.0));
+      const double end = scene_->box.size[axis] * copies_[axis];  // rounding must not reach it
+      row.position[axis] = std::min(row.position[axis] + static_cast<double>(at[axis]) * scene_->box.size[axis],
+                                    std::nextafter(end, 0.0));
     }
     take(row);
   }
@@ -121,7 +108,7 @@ void Selection::visit(std::int64_t begin, std::int64_t end,
   while (begin < end) {
     const std::int64_t first = begin % n;
     const std::int64_t count = std::min({batch_rows, end - begin, n - first});
-    visit_batch(begin / n, first, count, take);
+    visit_batch(begin / n, read(first, count), take);
     begin += count;
   }
 }
@@ -131,7 +118,7 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
   Specimen s;
   Found found;
   comm::agree_on(comm, [&] {
-    s.pack = printable(std::filesystem::path(request.pack).filename().string());
+    s.pack = std::filesystem::path(request.pack).filename().string();
     s.file = std::filesystem::path(request.file).filename().string();
     s.version = file.text("/provenance", "version");
     s.duration = file.number("/summary", "duration");
@@ -180,8 +167,8 @@ std::vector<std::string> header_lines(const Specimen& s) {
   std::vector<std::string> lines{
       fmt::format("packmpi {}: units si (m, kg, s)", version()),
       fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,
-                  s.flat() ? "spheres in a plane" : "spheres", s.pack, s.version, s.scene.in.seed, s.volume,
-                  s.volume * s.scene.in.particles.density),
+                  s.flat() ? "spheres in a plane" : "spheres", comment(s.pack), comment(s.version), s.scene.in.seed,
+                  s.volume, s.volume * s.scene.in.particles.density),
       box};
   if (s.trim == Trim::drop) lines.emplace_back("trimmed: particles that reach above H_d are left out");
   if (s.trim == Trim::cut) lines.emplace_back("trimmed: particles with their centre above H_d are left out");

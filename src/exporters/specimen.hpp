@@ -25,8 +25,9 @@ struct Outgoing {
 /// The list of outgoing particles, read batch by batch; never whole in memory. Rank-local.
 class Selection {
  public:
-  Selection(const pack::PackFile& file, const geometry::Container& box, const ConvertRequest& request)
-      : file_(&file), box_(box), trim_(request.trim), copies_(request.copies) {}
+  /// Both must live as long.
+  Selection(const pack::PackFile& file, const scene::Scene& scene, const ConvertRequest& request)
+      : pack_(request.pack), file_(&file), scene_(&scene), trim_(request.trim), copies_(request.copies) {}
 
   /// Places in the list: particles times copies. Trimmed particles have a place and are passed over.
   [[nodiscard]] std::int64_t places() const { return file_->count() * copies_[0] * copies_[1]; }
@@ -36,17 +37,20 @@ class Selection {
 
  private:
   [[nodiscard]] bool kept(const pack::ParticleRow& row) const;
-  void visit_batch(std::int64_t copy, std::int64_t first, std::int64_t count,
+  [[nodiscard]] pack::PackRows read(std::int64_t first, std::int64_t count) const;
+  void visit_batch(std::int64_t copy, const pack::PackRows& rows,
                    const std::function<void(const pack::ParticleRow&)>& take) const;
 
+  std::string pack_;
   const pack::PackFile* file_;
-  geometry::Container box_;
+  const scene::Scene* scene_;
   Trim trim_;
   std::array<int, 2> copies_;
 };
 
 /// What writers know beside the particles. The same on all ranks.
 struct Specimen {
+  // Words as they are in the pack or the user's: exporters/quote.hpp before they are written.
   std::string pack;     ///< file name of the pack, without folder
   std::string file;     ///< file name of what is written, without folder
   std::string version;  ///< of the program that made the pack

@@ -3,6 +3,7 @@
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
+#include "exporters/quote.hpp"
 
 namespace packmpi::exporters::yade {
 namespace {
@@ -60,8 +61,8 @@ std::string script(const Specimen& s) {
       "# not carried over: velocities and spins; the friction here has a history (Mindlin)\n"
       "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
       "import math\nimport os\nfrom yade import pack, utils\n\n"
-      "data = os.environ.get('PACK_DATA', {:?})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
-      s.file);
+      "data = os.environ.get('PACK_DATA', {})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
+      python_string(s.file));
   text += materials(s);
   text += fmt::format(
       "spheres = pack.SpherePack()\nspheres.load(data)\n"
