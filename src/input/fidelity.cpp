@@ -27,6 +27,7 @@ struct Protocol {
 double fall(const Input& in) { return std::sqrt(2.0 * in.layers.thickness / in.jamming.gravity); }
 
 bool is_draft(const Input& in) { return in.fidelity == "draft"; }
+bool remembers(const Input& in) { return in.contact.tangential == Tangential::mindlin; }
 bool flat(const Input& in) { return in.container.dimension == 2; }
 
 /// NaN, of a scene that checks will refuse: high.
@@ -39,12 +40,16 @@ struct Softness {
                   ///< relaxation
 };
 
-/// At least `wanted` [Pa]; that of the particles if it would gain little to soften them.
+/// At least `wanted` [Pa]; that of the particles if it would gain little to soften them. A large particle presses a
+/// small one with the square of their ratio: beyond a ratio of five, layers are stiffer by as much.
 double softened(const Input& in, const Softness& softness, double wanted) {
-  constexpr double worth_it = 0.75;
+  constexpr double worth_it = 0.75, modest = 5.0;
   const double hard = in.particles.youngs_modulus;
   const double stress = in.particles.density * in.jamming.gravity * in.container.size.back();
-  const double soft = std::max({wanted, softness.share * hard, softness.weight * stress});
+  const RadiusRange radii = radius_range(in.particles.radius);
+  const double squeeze = std::fmax(1.0, radii.largest / (modest * radii.smallest));
+  const double soft =
+      std::max({wanted, softness.share * hard * squeeze * squeeze * squeeze * squeeze, softness.weight * stress});
   return soft < worth_it * hard ? soft : hard;
 }
 
@@ -129,6 +134,38 @@ Protocol in_space(Input in, const Spatial& rule) {
   return p;
 }
 
+/// A protocol for friction with memory. What has come to rest stays there, so there is no creep to match: layers get
+/// the time to settle, the newest ones move, and the final relaxation hardens what was soft. Times in falls.
+struct Holding {
+  double duration;  ///< of a layer
+  double depth;     ///< of the window, in particle diameters; 0: all move
+  double relaxation;
+  double relaxation_of_layer;  ///< and more for each h_0 of H_d
+  Softness softness;
+};
+
+Protocol with_memory(const Input& in, const Holding& rule) {
+  constexpr double settled_fraction = 0.6, most_window = 1000.0, least_window = 4.0;
+  const double t = fall(in), h = in.layers.thickness, layers = in.container.size.back() / h;
+  const RadiusRange radii = radius_range(in.particles.radius);
+  const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
+  const double rise = h * in.layers.fraction / settled_fraction;  // of the bed by a layer
+  const double window = within(std::ceil(rule.depth * diameter / rise), least_window, most_window);
+  return {.duration = rule.duration * t,
+          .window = rule.depth > 0.0 ? static_cast<int>(window) : 0,
+          .relaxation = (rule.relaxation + rule.relaxation_of_layer * layers) * t,
+          .modulus = softened(in, rule.softness, 0.0)};
+}
+
+/// Measured with scripts/study/presets.py (doc/accuracy.md): "reference" is what halving the step or doubling the
+/// duration does not change; "balanced" and "draft" are held to it.
+Protocol with_memory(const Input& in) {
+  constexpr Softness hard{1.0, 0.0};
+  if (in.fidelity == "reference") return with_memory(in, {5.0, 0.0, 2.5, 0.0, hard});
+  if (is_draft(in)) return with_memory(in, {0.9, 6.0, 1.0, 0.05, {0.03, 1.3e3}});
+  return with_memory(in, {1.5, 8.3, 2.0, 0.1, {0.1, 2e3}});
+}
+
 /// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the
 /// rotation: with it particles roll past each other as well.
 Protocol draft(const Input& in) {
@@ -177,15 +214,20 @@ std::vector<PresetValue> preset(const Input& in) {
   if (in.fidelity == "paper") {
     return {{"layers.duration", "1.0"}, {"dynamics.time_step", "1e-4"}, {"dynamics.window", "0"}};
   }
-  const Protocol protocol = is_draft(in) ? draft(in) : balanced(in);
+  const Protocol protocol = remembers(in) ? with_memory(in) : (is_draft(in) ? draft(in) : balanced(in));
   std::vector<PresetValue> values{{"layers.duration", rounded(protocol.duration)},
-                                  {"layers.velocity", downward(in, protocol.speed)},
                                   {"dynamics.time_step", "auto"},
                                   {"dynamics.window", std::to_string(protocol.window)},
                                   {"dynamics.relaxation", rounded(protocol.relaxation)}};
+  if (protocol.speed > 0.0) values.push_back({"layers.velocity", downward(in, protocol.speed)});
   const bool soft = protocol.modulus < in.particles.youngs_modulus;
   if (soft) values.push_back({"layers.youngs_modulus", rounded(protocol.modulus)});
   return values;
+}
+
+std::optional<std::string_view> preset_law(const Document& document, std::string_view path, const Input& in) {
+  const bool named = document.find("fidelity") != nullptr && in.fidelity != "paper";
+  return named && path == "contact.tangential" ? std::optional("\"mindlin\"") : std::nullopt;
 }
 
 void apply_preset(const Document& document, Input& in) {
@@ -195,6 +237,10 @@ void apply_preset(const Document& document, Input& in) {
     fail(named->place, "fidelity",
          fmt::format("\"{}\" measures times by the free fall through a layer, and there is no gravity; use \"paper\"",
                      in.fidelity));
+  }
+  if (in.fidelity == "reference" && !remembers(in)) {
+    fail(named->place, "fidelity",
+         "\"reference\" needs friction that holds at rest; use contact.tangential = \"mindlin\"");
   }
   for (const PresetValue& entry : preset(in)) {
     if (document.find(entry.path) == nullptr) {

@@ -1,5 +1,6 @@
 /// What `fidelity` stands for: values for other keys where the scene gives none.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,11 @@ struct PresetValue {
 /// The values of the preset in.fidelity for a scene with this container, these layers, gravity and modulus. Numbers
 /// are rounded to three digits. Local. Throws Error(bad_input) where there is no free fall to measure times by.
 [[nodiscard]] std::vector<PresetValue> preset(const Input& in);
+
+/// The value, as TOML, of a key that decides which other keys belong to the scene, where the document names a preset and
+/// not the key: presets but "paper" have friction with memory.
+[[nodiscard]] std::optional<std::string_view> preset_law(const Document& document, std::string_view path,
+                                                         const Input& in);
 
 /// Gives the keys of the preset that the document does not have their values; only if the document names a preset.
 void apply_preset(const Document& document, Input& in);

@@ -116,9 +116,9 @@ std::vector<Key> general_keys() {
           "Version of these keys; files written for another one are refused, not guessed at.")),
     whole("seed", at(&Input::seed), at_least(0), "1",
           "Names the pack among all packs of the scene: radii and positions are functions of it."),
-    word_of("fidelity", at(&Input::fidelity), {"paper", "balanced", "draft"}, "paper",
+    word_of("fidelity", at(&Input::fidelity), {"paper", "reference", "balanced", "draft"}, "paper",
           "Preset: what keys are that the scene does not give. \"paper\": a step of 1e-4 s, 1.0 s a layer, all particles move; "
-          "\"balanced\", \"draft\": cheaper, see doc/input.md, \"Presets\". Without the key, each key has its own default."),
+          "\"reference\", \"balanced\", \"draft\": friction with memory, from dear to cheap; see doc/input.md, \"Presets\". Without the key, each key has its own default."),
   };
 }
 

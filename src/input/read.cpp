@@ -110,6 +110,8 @@ void read_key(const Key& key, const Document& document, Input& in) {
     if (node != nullptr) fail(node->place, key.path, fmt::format("belongs to {} only; remove it", key.when.words));
   } else if (node != nullptr) {
     store(key, *node, in);
+  } else if (const auto law = preset_law(document, key.path, in)) {
+    store(key, parse_value(std::string(*law), "preset"), in);
   } else if (key.standard) {
     store_default(key, in);
   } else {

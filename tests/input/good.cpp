@@ -199,11 +199,14 @@ TEST(Fidelity, PaperIsAFixedStepAndDurationAndAllMove) {
       << "without the key, each key has its own default";
 }
 
+/// The presets for friction without memory.
+constexpr const char* sliding = "contact.tangential=sliding";
+
 TEST(Fidelity, PresetsAreKeysOfTheEffectiveInput) {
   for (const char* name : {"fidelity=balanced", "fidelity=draft"}) {
     for (const char* dimension : {"container.dimension=3", "container.dimension=2"}) {
       for (const char* rotation : {"dynamics.rotation=true", "dynamics.rotation=false"}) {
-        std::vector<std::string> set{name, dimension, rotation};
+        std::vector<std::string> set{name, sliding, dimension, rotation};
         if (std::string(dimension).ends_with('2')) set.emplace_back("container.size=[1.0, 0.5]");
         const Input in = with(set);
         EXPECT_LT(in.layers.duration, 1.0) << name;
@@ -222,11 +225,11 @@ TEST(Fidelity, PresetsAreKeysOfTheEffectiveInput) {
 
 TEST(Fidelity, GivenKeysWin) {
   const Input in =
-      with({"fidelity=balanced", "layers.duration=0.77", "dynamics.window=9", "layers.youngs_modulus=5e7"});
+      with({"fidelity=balanced", sliding, "layers.duration=0.77", "dynamics.window=9", "layers.youngs_modulus=5e7"});
   EXPECT_EQ(in.layers.duration, 0.77);
   EXPECT_EQ(in.dynamics.window, 9);
   EXPECT_EQ(in.layers.youngs_modulus, 5e7);
-  EXPECT_EQ(in.dynamics.relaxation, with({"fidelity=balanced"}).dynamics.relaxation) << "the others stay";
+  EXPECT_EQ(in.dynamics.relaxation, with({"fidelity=balanced", sliding}).dynamics.relaxation) << "the others stay";
   const std::vector<std::string> lines = preset_in_use(in);
   EXPECT_TRUE(std::ranges::any_of(
       lines, [](const std::string& line) { return line.starts_with("layers.duration = 0.77 (the preset: 0."); }));
@@ -238,9 +241,9 @@ TEST(Fidelity, GivenKeysWin) {
 }
 
 TEST(Fidelity, TimesGoWithTheFreeFallThroughALayer) {
-  const Input in = with({"fidelity=draft"});
-  const Input heavy = with({"fidelity=draft", "jamming.gravity=8.0"});  // four times as much
-  const Input thick = with({"fidelity=draft", "layers.thickness=0.4"});
+  const Input in = with({"fidelity=draft", sliding});
+  const Input heavy = with({"fidelity=draft", sliding, "jamming.gravity=8.0"});  // four times as much
+  const Input thick = with({"fidelity=draft", sliding, "layers.thickness=0.4"});
   EXPECT_NEAR(heavy.layers.duration, 0.5 * in.layers.duration, 0.01 * in.layers.duration);
   EXPECT_NEAR(thick.layers.duration, 2.0 * in.layers.duration, 0.01 * in.layers.duration);
   EXPECT_NEAR(*heavy.dynamics.relaxation, 0.5 * *in.dynamics.relaxation, 0.01 * *in.dynamics.relaxation);
@@ -265,24 +268,25 @@ double creep_over_paper(const Input& in) {
 
 TEST(Fidelity, PilesCreepAsMuchAsTheyAreToWhateverTheirParticles) {
   const double on = 2.45 * std::sqrt(0.4), off = 1.14 * std::pow(0.4, 0.15);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced"})), on, 0.01 * on);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "particles.youngs_modulus=3e8"})), on, 0.01 * on);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "contact.friction=0.5"})), on * std::pow(0.4, 0.25),
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "particles.youngs_modulus=3e8"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "contact.friction=0.5"})), on * std::pow(0.4, 0.25),
               0.01 * on);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "particles.density=3000.0"})), on, 0.01 * on);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "jamming.gravity=8.0"})), on, 0.01 * on);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "dynamics.rotation=false"})), off, 0.01 * off);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "dynamics.rotation=false", "particles.radius.value=0.01"})),
-              off * std::pow(0.5, 0.15), 0.01 * off);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", "dynamics.rotation=false", "contact.friction=0.4"})),
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "particles.density=3000.0"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "jamming.gravity=8.0"})), on, 0.01 * on);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "dynamics.rotation=false"})), off, 0.01 * off);
+  EXPECT_NEAR(
+      creep_over_paper(with({"fidelity=balanced", sliding, "dynamics.rotation=false", "particles.radius.value=0.01"})),
+      off * std::pow(0.5, 0.15), 0.01 * off);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, "dynamics.rotation=false", "contact.friction=0.4"})),
               off * std::pow(0.5, 0.35), 0.01 * off);
   const double graded = 2.45 * std::sqrt(2.0 * std::sqrt(0.015 * 0.025) / 0.1);
-  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", few_sizes})), graded, 0.01 * graded);
+  EXPECT_NEAR(creep_over_paper(with({"fidelity=balanced", sliding, few_sizes})), graded, 0.01 * graded);
 }
 
 TEST(Fidelity, TheRelaxationIsALittleShorterWhereTheShortestLayersWouldLetAPileCreepByTooMuch) {
   const auto relaxation = [](const char* modulus) {
-    const Input in = with({"fidelity=balanced", "dynamics.rotation=false", "contact.friction=0.4", modulus});
+    const Input in = with({"fidelity=balanced", sliding, "dynamics.rotation=false", "contact.friction=0.4", modulus});
     return *in.dynamics.relaxation;
   };
   const double usual = (2.0 + 0.18 * 5.0) * std::sqrt(2.0 * 0.1 / 2.0);
@@ -292,27 +296,61 @@ TEST(Fidelity, TheRelaxationIsALittleShorterWhereTheShortestLayersWouldLetAPileC
 
 TEST(Fidelity, LayersAreAsSoftAsThePileBearsAndNoSofterThanItPays) {
   const auto modulus = [](const char* name, const char* particles) {
-    const Input in = with({name, particles, few_sizes});
+    const Input in = with({name, sliding, particles, few_sizes});
     return in.layers.youngs_modulus.value_or(in.particles.youngs_modulus);
   };
   // rho g H_d is 1000 Pa here; 2e3 and 1.3e3 of it are the least
-  EXPECT_GT(with({"fidelity=balanced"}).layers.youngs_modulus, 1.2 * 0.06 * 1e8) << "no softer than the creep asks for";
+  EXPECT_GT(with({"fidelity=balanced", sliding}).layers.youngs_modulus, 1.2 * 0.06 * 1e8)
+      << "no softer than the creep asks for";
   EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=3e10"), 0.06 * 3e10);
   EXPECT_EQ(modulus("fidelity=draft", "particles.youngs_modulus=3e10"), 0.03 * 3e10);
   EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=1e7"), 1e7) << "large steps as it is";
   EXPECT_EQ(modulus("fidelity=balanced", "particles.youngs_modulus=2e6"), 2e6);
-  const Input high = with({"fidelity=balanced", "container.size=[1.0, 1.0, 5.0]"});
+  const Input high = with({"fidelity=balanced", sliding, "container.size=[1.0, 1.0, 5.0]"});
   EXPECT_EQ(high.layers.youngs_modulus, 2e3 * 1e4) << "the stress of the bed";
 }
 
 TEST(Fidelity, AWindowIsSoManyParticlesDeep) {
   const auto window = [](const char* name, const char* radius) {
-    return with({name, std::string("particles.radius.value=") + radius}).dynamics.window;
+    return with({name, sliding, std::string("particles.radius.value=") + radius}).dynamics.window;
   };
   EXPECT_EQ(window("fidelity=balanced", "0.02"), 6);  // a layer lifts the bed by 0.0417 m
   EXPECT_EQ(window("fidelity=balanced", "0.002"), 5) << "at least";
   EXPECT_EQ(window("fidelity=draft", "0.02"), 4);
   EXPECT_EQ(window("fidelity=draft", "0.002"), 3) << "at least";
+}
+
+TEST(Fidelity, PresetsButPaperHaveFrictionWithMemory) {
+  EXPECT_EQ(with({}).contact.tangential, Tangential::sliding);
+  EXPECT_EQ(with({"fidelity=paper"}).contact.tangential, Tangential::sliding);
+  for (const char* name : {"fidelity=reference", "fidelity=balanced", "fidelity=draft"}) {
+    const Input in = with({name, "contact.rolling_friction=0.1"});  // a key of that law
+    EXPECT_EQ(in.contact.tangential, Tangential::mindlin) << name;
+    EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << name;
+  }
+}
+
+TEST(Fidelity, WithMemoryLayersGetTheTimeToSettle) {
+  const double fall = std::sqrt(2.0 * 0.1 / 2.0);
+  const Input reference = with({"fidelity=reference"}), balanced = with({"fidelity=balanced"});
+  EXPECT_NEAR(reference.layers.duration, 5.0 * fall, 0.005 * fall);
+  EXPECT_EQ(reference.dynamics.window, 0) << "all move";
+  EXPECT_FALSE(reference.layers.youngs_modulus.has_value()) << "hard";
+  EXPECT_NEAR(balanced.layers.duration, 1.5 * fall, 0.005 * fall);
+  EXPECT_NEAR(*balanced.dynamics.relaxation, (2.0 + 0.1 * 5.0) * fall, 0.005 * fall);
+  EXPECT_EQ(balanced.dynamics.window, 8) << "8.3 diameters of 0.04 m, 0.0417 m a layer";
+  EXPECT_EQ(balanced.layers.youngs_modulus, 1e7);
+}
+
+TEST(Fidelity, LayersAreStifferWhereLargeParticlesPressSmallOnes) {
+  const auto modulus = [](const char* small) {
+    return with({"fidelity=balanced", std::string("particles.radius={ distribution = \"bidisperse\", small = ") +
+                                          small + ", large = 0.02, large_share = 0.5, weighting = \"mass\" }"})
+        .layers.youngs_modulus.value_or(1e8);
+  };
+  EXPECT_EQ(modulus("0.005"), 1e7) << "four to one";
+  EXPECT_EQ(modulus("0.002"), 1e8) << "ten to one";
+  EXPECT_NEAR(modulus("0.0032"), 1e7 * std::pow(1.25, 4), 1e5) << "6.25 to one";
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {
