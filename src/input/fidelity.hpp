@@ -20,8 +20,8 @@ struct PresetValue {
 /// are rounded to three digits. Local. Throws Error(bad_input) where there is no free fall to measure times by.
 [[nodiscard]] std::vector<PresetValue> preset(const Input& in);
 
-/// The value, as TOML, of a key that decides which other keys belong to the scene, where the document names a preset and
-/// not the key: presets but "paper" have friction with memory.
+/// The value, as TOML, of a key that decides which other keys belong to the scene, where the document names a preset
+/// and not the key: presets but "paper" have friction with memory.
 [[nodiscard]] std::optional<std::string_view> preset_law(const Document& document, std::string_view path,
                                                          const Input& in);
 
