@@ -12,6 +12,7 @@
 
 #include "disk/files.hpp"
 #include "disk/scatter.hpp"
+#include "disk/seal.hpp"
 #include "pack/pack_file.hpp"
 #include "pack/pack_plan.hpp"
 #include "pack/samples.hpp"
@@ -267,6 +268,18 @@ TEST_F(Pack, AFlippedBitAnywhereIsRefused) {
     EXPECT_THROW((void)read_pack(damaged_path), Error) << "byte " << at << " of " << whole.size();
     EXPECT_TRUE(is_pack(damaged_path) || at < 65536) << "byte " << at;
   }
+}
+
+TEST(Seal, KnowsEveryRowAndWhereItIs) {
+  const std::vector<std::uint64_t> rows{3, 5, 3, 9}, swapped{5, 3, 3, 9}, other{3, 5, 3, 8};
+  const auto digest = [](const std::vector<std::uint64_t>& numbers, std::int64_t first) {
+    return rows_digest(std::as_bytes(std::span(numbers)), sizeof(std::uint64_t), first);
+  };
+  EXPECT_NE(digest(rows, 0), digest(swapped, 0));
+  EXPECT_NE(digest(rows, 0), digest(other, 0));
+  EXPECT_NE(digest(rows, 0), digest(rows, 1));
+  const std::vector<std::uint64_t> first{3, 5}, second{3, 9};
+  EXPECT_EQ(digest(rows, 0), digest(first, 0) + digest(second, 2)) << "shares of ranks add up";
 }
 
 TEST_F(Pack, IdsAreSharedOutHoweverManyThereAre) {

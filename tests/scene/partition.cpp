@@ -41,6 +41,13 @@ TEST(CutLine, SharesDifferByAtMostTheHeaviestCell) {
   }
 }
 
+TEST(CutLine, NothingAndEqualWeightsAreCutIntoEqualLengths) {
+  for (const std::int64_t weight : {0, 1, 1000}) {
+    EXPECT_EQ(cut_line(std::vector<std::int64_t>(12, weight), 3), (std::vector<int>{0, 4, 8, 12})) << weight;
+  }
+  EXPECT_EQ(cut_line(std::vector<std::int64_t>{9, 0, 0, 0, 0, 0, 0, 0, 0, 9}, 2), (std::vector<int>{0, 5, 10}));
+}
+
 TEST(CutLine, OneHeavyCellAtTheEndLeavesTheOthersAColumnEach) {
   std::vector<std::int64_t> weights(5, 0);
   weights.back() = 1000000;
