@@ -10,10 +10,15 @@ namespace packmpi::observe {
 namespace {
 
 constexpr double width_in_diameters = 4.0;
+// On an empty plain columns are wider: their memory and their numbers in PETSc are bounded.
+constexpr double most_columns = 0x1p20;
 
 ColumnNumbering numbering(const scene::Scene& scene) {
   ColumnNumbering columns;
-  const double width = width_in_diameters * 2.0 * scene.sizes.mean();
+  double width = width_in_diameters * 2.0 * scene.sizes.mean();
+  const int axes = scene.box.lateral_axes();
+  const double wanted = scene.box.floor_area() / (axes == 2 ? width * width : width);
+  if (wanted > most_columns) width *= axes == 2 ? std::sqrt(wanted / most_columns) : wanted / most_columns;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
     columns.lengths[axis] = scene.box.size[axis];
     columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.box.size[axis] / width));

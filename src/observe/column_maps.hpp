@@ -21,9 +21,10 @@ struct ColumnMaps {
   std::vector<double> vertical_stress;
 };
 
-/// Columns are four mean diameters wide or a little more. The mean of solid_fraction is Density::phi to rounding, the
-/// largest top is top(). Collective; sums are of whole numbers, so the maps are the same on any number of ranks. Cost:
-/// O(particles + pairs), about two steps; 16 bytes a contact for the while.
+/// Columns are four mean diameters wide or a little more; wider where there would be over 2^20 of them. The mean of
+/// solid_fraction is Density::phi to rounding, the largest top is top(). Collective; sums are of whole numbers, so the
+/// maps are the same on any number of ranks. Cost: O(particles + pairs), about two steps; 16 bytes a contact for the
+/// while.
 [[nodiscard]] ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                                      const neighbor::PairList& pairs, const dynamics::StoredView& stored = {});
 /// Columns of the maps of a scene. Local.
