@@ -1,6 +1,7 @@
 #include "disk/text_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <system_error>
@@ -24,7 +25,8 @@ std::vector<std::filesystem::path> make_folders(const std::filesystem::path& fol
 
 void check_here(const std::filesystem::path& folder, std::int64_t bytes) {
   const std::vector<std::filesystem::path> made = make_folders(folder);
-  const std::string probe = (folder / ".packmpi-probe.tmp").string();
+  // Named by the process: the groups of an ensemble look into one folder at the same time.
+  const std::string probe = (folder / fmt::format(".packmpi-probe.{}.tmp", getpid())).string();
   try {
     reserve(probe, bytes);
   } catch (const Error&) {

@@ -239,7 +239,7 @@ def petsc():
 def temporary_names():
     folder = fresh("links")
     (folder / "mine").write_text("kept")
-    names = ("a.hdf.tmp", "a.json.tmp", ".packmpi-probe.tmp", "a.ckpt.A.hdf.tmp", "a.steps.csv.tmp")
+    names = ("a.hdf.tmp", "a.json.tmp", "a.ckpt.A.hdf.tmp", "a.steps.csv.tmp")
     for name in names:
         (folder / name).symlink_to("mine")
     (folder / "a.steps.csv").symlink_to("new")
@@ -264,7 +264,7 @@ def pipes_and_devices():
     refuses("analyze", 5, kind, "analyze", "pipe", folder=folder)
     refuses("convert", 5, kind, "convert", "pipe", "--to", "csv", folder=folder)
     refuses("restart", 6, kind, "a.toml", "-q", "--restart", "pipe", "-o", "new", folder=folder)
-    for name in ("a.hdf.tmp", "a.json.tmp", ".packmpi-probe.tmp", "a.log", "a.steps.csv", "a.ckpt.A.hdf"):
+    for name in ("a.hdf.tmp", "a.json.tmp", "a.log", "a.steps.csv", "a.ckpt.A.hdf"):
         os.mkfifo(folder / name)
         code, text, _ = run("a.toml", "-q", *(("--restart", "auto") if "hdf" in name else ("--force",)), folder=folder)
         check(f"{name} is a FIFO: ends, got {code}", code is not None and code >= 0, text)
