@@ -111,7 +111,7 @@ void petsc_options(const std::string& words) {
 std::string petsc_options_in_use() {
   char* all = nullptr;
   check_petsc(PetscOptionsGetAll(nullptr, &all), "tell its options");
-  const std::string words = all == nullptr ? "" : text::printable(text::trimmed(all));
+  std::string words = all == nullptr ? "" : text::printable(text::trimmed(all));
   PetscFree(all);
   return words;
 }

@@ -154,7 +154,8 @@ void ContactMemory::each_border(const particles::Store& store, const PairList& p
 void ContactMemory::set_border(const particles::Store& store, const PairList& pairs, LocalIndex mine, GlobalId other,
                                const double* values) {
   const std::size_t entries = pairs.first.size();
-  const auto [begin, end] = std::ranges::equal_range(pairs.first, mine);
+  const auto [begin, end] =
+      std::equal_range(pairs.first.begin(), pairs.first.end(), mine);  // clang 14 has no ranges for it
   for (auto at = begin; at != end; ++at) {
     const auto p = static_cast<std::size_t>(at - pairs.first.begin());
     if (pairs.second[p] < owned_ || id_of(store, pairs.second[p]) != other) continue;

@@ -24,6 +24,8 @@ ColumnField::~ColumnField() {
 void ColumnField::send(std::span<const ColumnValue> values, InsertMode mode) {
   std::vector<PetscInt> column;
   std::vector<PetscScalar> numbers;
+  column.reserve(values.size());
+  numbers.reserve(values.size());
   for (const ColumnValue& one : values) {
     column.push_back(static_cast<PetscInt>(one.column % used_ + padded_ * (one.column / used_)));
     numbers.push_back(one.value);

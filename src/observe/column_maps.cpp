@@ -64,6 +64,7 @@ std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, 
                          const ColumnNumbering& columns) {
   const auto vertical = static_cast<std::size_t>(scene.box.vertical());
   std::vector<ColumnValue> values;
+  values.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 x = store.position(i);
     values.push_back({columns.column(x), x[vertical] + store.radius(i)});
@@ -78,6 +79,7 @@ std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Sce
                                  const ColumnNumbering& columns) {
   const auto vertical = static_cast<std::size_t>(scene.box.vertical());
   std::vector<ColumnValue> terms;
+  terms.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 x = store.position(i);
     terms.push_back({columns.column(x),

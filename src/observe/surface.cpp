@@ -80,8 +80,8 @@ std::vector<double> heights_by_mail(const comm::Comm& comm, const std::vector<To
 
 std::vector<double> heights_on_grid(const comm::Comm& comm, const std::vector<Top>& tops,
                                     const ColumnNumbering& columns) {
-  std::vector<ColumnValue> values;
-  for (const Top& top : tops) values.push_back({top.column, top.height});
+  std::vector<ColumnValue> values(tops.size());
+  std::ranges::transform(tops, values.begin(), [](const Top& top) { return ColumnValue{top.column, top.height}; });
   ColumnField heights(comm, columns);
   heights.raise_to(values);
   return heights.local();
