@@ -149,8 +149,12 @@ TEST(SameBitsWithMemory, OfGradedPeriodicSpheresThatRollAndTwist) {
 }
 
 TEST(SameBitsWithMemory, OfDiscs) {
-  expect_one_pack(remembering(scene_of(2, true, false, false), 0.1), {1, 3, 8});
-  expect_one_pack(remembering(scene_of(2, false, true, true), 0.0), {1, 3, 8});
+  for (const bool graded : {true, false}) {
+    input::Input in = remembering(scene_of(2, graded, !graded, false), graded ? 0.1 : 0.0);
+    in.layers.duration = 0.15;  // time to come to lie on each other
+    in.contact.damping_ratio = 1.0;
+    expect_one_pack(in, {1, 3, 8});
+  }
 }
 
 TEST(SameBitsWithMemory, WithoutRotation) {
