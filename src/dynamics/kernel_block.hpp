@@ -16,6 +16,7 @@ struct Memory {
   static constexpr int rows = 4 * chunks;
   static constexpr int stored = scene::stored_doubles(F);
   static constexpr int accumulators = accumulators_of(layout);
+  static constexpr bool two_loops = F.memory && F.dimension == 3;  // of the law, see kernel_resolve.hpp
 
   /// How often a field at this offset is read.
   static constexpr int reads(int offset) {
@@ -80,11 +81,13 @@ struct Memory {
 template <Features F>
 struct Block {
   using M = Memory<F>;
-  static constexpr int size = 128;
+  // What a block touches has to stay in 32 KB of cache.
+  static constexpr int size = F.rolling ? 32 : (F.memory ? 64 : 128);
   static constexpr int row = size + 8;  // rows a power of two apart would share cache sets
   alignas(64) double in[M::rows][row];
   alignas(64) double again[M::any_twice ? M::rows : 1][row];
   alignas(64) double distance[row];  // of a wall
+  alignas(64) double pressed[M::two_loops ? 4 : 1][row];
   alignas(64) std::int64_t out[M::accumulators][row];
   alignas(64) std::int64_t own[M::any_own ? M::accumulators : 1][row];
   alignas(64) double stored[M::stored > 0 ? M::stored : 1][row];
@@ -158,11 +161,14 @@ PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex bas
   }
 }
 
-/// What `count` contacts have stored, from entry `at` of a list on, into the rows; zero in the fill.
+/// What `count` contacts have stored, from entry `at` of a list on, into the rows; zero in the fill. The block after
+/// the next is fetched from memory meanwhile.
 template <Features F>
 PACKMPI_INLINE void fetch(const StoredVectors& from, std::int64_t at, Block<F>& b) {
+  constexpr int line = 8, ahead = 2 * Block<F>::size;
   for (int c = 0; c < Memory<F>::stored; ++c) {
     const double* source = from.values + c * from.entries + at;
+    for (int p = 0; p < Block<F>::size; p += line) __builtin_prefetch(source + ahead + p, 1);
     for (int p = 0; p < b.count; ++p) b.stored[c][p] = source[p];
     for (int p = b.count; p < b.filled; ++p) b.stored[c][p] = 0.0;
   }

@@ -130,6 +130,9 @@ struct SpringState {
   double overlap;
 };
 
+/// So small a drag stands for none [N s/m]: its quotients stay finite.
+constexpr double tiny_drag = 1e-100;
+
 /// `damped`: sqrt(m* a). `rate`: at which the overlap grows; `drift`: square of the centres' tangential velocity.
 PACKMPI_INLINE SpringState spring_state(const Constants& c, const Meeting& at, double contact, double damped,
                                         double rate, double drift) {
@@ -142,18 +145,21 @@ PACKMPI_INLINE SpringState spring_state(const Constants& c, const Meeting& at, d
           at.overlap};
 }
 
-/// The part of an elastic displacement that is left after the contact has grown (the force stays, so the displacement
-/// falls as 1/a) or shrunk (the displacement stays, so the force falls as a): a load cycle gives no energy. Exactly 1
-/// at rest.
-PACKMPI_INLINE double kept_part(const SpringState& now) { return root(now.kept / (now.overlap + tiny)); }
+/// The part of an elastic displacement that is left after the contact has grown, when the force stays and the
+/// displacement falls as 1/a, or shrunk, when the displacement stays and the force falls as a: a load cycle gives no
+/// energy. The ratio of the radii is a root of that of the overlaps; in its place stands their harmonic mean over the
+/// greater, which is the same to the second order of the step and never more. Exactly 1 at rest.
+PACKMPI_INLINE double kept_part(const SpringState& now) { return 2.0 * now.kept / (now.overlap + now.kept + tiny); }
 
-/// The same for a vector in the tangent plane, which is turned with the pair: projected on the new plane at its length.
+/// The same for a vector in the tangent plane, which is turned with the pair: projected on the new plane, and made as
+/// long as it was, by a quotient that is the root's of 1 + tan^2 to its sixth order and never more.
 PACKMPI_INLINE Vector turned(const SpringState& now, const Vector& n, const Vector& a) {
   const double off = dot(a, n);
   const Vector flat = sum(a, -off, n);
-  const double square = dot(flat, flat);
-  const double part = root((square + off * off) * now.kept / (square * now.overlap + tiny));
-  return scaled(part, flat);
+  const double square = 4.0 * dot(flat, flat);
+  const double lost = off * off;
+  const double longer = (square + 3.0 * lost) * (2.0 * now.kept);
+  return scaled(longer / ((square + lost) * (now.overlap + now.kept) + tiny), flat);
 }
 
 /// A spring and its dashpot, in a row with a slider of the limit `most` [N]: the force for a displacement `x` (before
@@ -161,9 +167,12 @@ PACKMPI_INLINE Vector turned(const SpringState& now, const Vector& n, const Vect
 PACKMPI_INLINE Vector pull(const SpringState& now, const Constants& c, double most, const Vector& u, Vector& x) {
   const Vector elastic = scaled(now.stiffness, x);
   const Vector trial = sum(elastic, now.drag, u);
-  const double part = most / root(dot(trial, trial) + tiny);
+  const double strength = root(dot(trial, trial) + tiny);
+  const double drag = now.drag + tiny_drag;
+  const double inverse = 1.0 / (strength * drag);  // of both, by one division
+  const double part = most * (drag * inverse);
   const Vector force = scaled(part < 1.0 ? part : 1.0, trial);
-  x = sum(x, c.time_step / (now.drag + tiny), sum(force, -1.0, elastic));
+  x = sum(x, c.time_step * (strength * inverse), sum(force, -1.0, elastic));
   return force;
 }
 
@@ -173,56 +182,71 @@ PACKMPI_INLINE double pull(const SpringState& now, const Constants& c, double mo
   const double trial = elastic + now.drag * u;
   const double strength = magnitude(trial);
   const double force = with_sign_of(most < strength ? most : strength, trial);
-  x = x + c.time_step / (now.drag + tiny) * (force - elastic);
+  x = x + c.time_step / (now.drag + tiny_drag) * (force - elastic);
   return force;
 }
 
+/// A contact before friction is known: what the normal direction makes of it.
+struct Pressed {
+  Vector n;
+  double normal;    // force [N]; its magnitude limits friction
+  Vector u;         // tangential velocity of the second past the first where they touch [m/s]
+  SpringState now;  // memory only
+  double radius;    // reduced [m]
+};
+
 /// n from first to second, u = v_second - v_first, s = sum of r omega.
 template <Features F>
-PACKMPI_INLINE Force contact_3d(const Constants& c, const Meeting& at) {
-  const Vector n = at.n;
-  const double rate = -dot(at.v, n);
+PACKMPI_INLINE Pressed press_3d(const Constants& c, const Meeting& at) {
+  const double rate = -dot(at.v, at.n);
   const double contact = root(at.reduced.radius * at.overlap);
   const double damped = root(at.reduced.mass * contact);
   const double raw = c.stiffness * contact * at.overlap + c.damping * damped * rate;
-  const double normal = raw < c.lowest_force ? c.lowest_force : raw;  // a NaN passes through
-  const double strength = magnitude(normal);
+  Pressed p = {at.n, raw < c.lowest_force ? c.lowest_force : raw, {}, {}, at.reduced.radius};  // a NaN passes through
+  if constexpr (F.friction) {
+    const Vector across = sum(at.v, rate, at.n);
+    p.u = across;
+    if constexpr (F.rotation) p.u = sum(across, -c.spin_slip, cross(at.s, at.n));
+    if constexpr (F.memory) p.now = spring_state(c, at, contact, damped, rate, dot(across, across));
+  }
+  return p;
+}
+
+/// Friction that remembers, and resistance to rolling and twisting.
+template <Features F>
+PACKMPI_INLINE Force hold_3d(const Constants& c, const Pressed& at, const Vector& spin, Springs springs) {
+  const Vector n = at.n;
+  const double strength = magnitude(at.normal);
+  springs.slip = turned(at.now, n, springs.slip);
+  const Vector t = pull(at.now, c, c.friction * strength, at.u, springs.slip);
+  Vector torque = {};
+  if constexpr (F.rolling) {
+    const double about = dot(spin, n);
+    springs.roll = turned(at.now, n, springs.roll);
+    springs.twist = kept_part(at.now) * springs.twist;
+    const Vector roll = scaled(at.radius, sum(spin, -about, n));
+    const Vector r = pull(at.now, c, c.rolling_friction * strength, roll, springs.roll);
+    const double w = pull(at.now, c, c.twisting_friction * strength, at.radius * about, springs.twist);
+    torque = scaled(at.radius, sum(r, w, n));
+  }
+  return {sum(t, -at.normal, n), cross(n, t), torque, strength + 0.0 * dot(at.u, at.u), springs};
+}
+
+template <Features F>
+PACKMPI_INLINE Force contact_3d(const Constants& c, const Meeting& at) {
+  const Pressed p = press_3d<F>(c, at);
+  const Vector n = p.n;
+  const double strength = magnitude(p.normal);
   if constexpr (!F.friction) {
-    return {{-(normal * n.x), -(normal * n.y), -(normal * n.z)}, {}, {}, strength, {}};
+    return {{-(p.normal * n.x), -(p.normal * n.y), -(p.normal * n.z)}, {}, {}, strength, {}};
+  } else if constexpr (F.memory) {
+    return hold_3d<F>(c, p, at.spin, at.springs);
   } else {
-    Vector u = sum(at.v, rate, n);
-    const double drift = dot(u, u);
-    if constexpr (F.rotation) u = sum(u, -c.spin_slip, cross(at.s, n));
-    Springs springs = at.springs;
-    Vector t;
-    Vector torque = {};
-    double trace = 0.0;
-    if constexpr (F.memory) {
-      const SpringState now = spring_state(c, at, contact, damped, rate, drift);
-      springs.slip = turned(now, n, springs.slip);
-      t = pull(now, c, c.friction * strength, u, springs.slip);
-      trace = dot(u, u);
-      if constexpr (F.rolling) {
-        const double about = dot(at.spin, n);
-        const Vector roll = scaled(at.reduced.radius, sum(at.spin, -about, n));
-        springs.roll = turned(now, n, springs.roll);
-        springs.twist = kept_part(now) * springs.twist;
-        const Vector r = pull(now, c, c.rolling_friction * strength, roll, springs.roll);
-        const double w = pull(now, c, c.twisting_friction * strength, at.reduced.radius * about, springs.twist);
-        torque = scaled(at.reduced.radius, sum(r, w, n));
-      }
-    } else {
-      const double square = dot(u, u) + tiny;
-      const double sliding = c.friction * strength / root(square);
-      const double stopping = c.slip * at.reduced.mass;
-      t = scaled(sliding < stopping ? sliding : stopping, u);
-      trace = square;
-    }
-    return {{t.x - normal * n.x, t.y - normal * n.y, t.z - normal * n.z},
-            cross(n, t),
-            torque,
-            strength + 0.0 * trace,
-            springs};
+    const double square = dot(p.u, p.u) + tiny;
+    const double sliding = c.friction * strength / root(square);
+    const double stopping = c.slip * at.reduced.mass;
+    const Vector t = scaled(sliding < stopping ? sliding : stopping, p.u);
+    return {sum(t, -p.normal, n), cross(n, t), {}, strength + 0.0 * square, {}};
   }
 }
 

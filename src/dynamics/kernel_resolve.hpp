@@ -93,11 +93,10 @@ PACKMPI_INLINE Curvatures curvatures_at(const Block<F>& b, int p, const Constant
   return {0.5 * (sum - difference), 0.5 * (sum + difference), 0.5 * sum, 0.5 * difference};
 }
 
-/// The contact of entry p, given its normal and overlap.
+/// The two ends of entry p as the law sees them, given where they touch.
 template <Features F>
-PACKMPI_INLINE void contact(Block<F>& b, int p, const Constants& c, const Reduced& reduced, const Touch& at,
-                            double scale) {
-  Curvatures k = {};
+PACKMPI_INLINE Meeting meeting_at(const Block<F>& b, int p, const Constants& c, const Reduced& reduced,
+                                  const Touch& at) {
   Meeting meeting = {reduced,
                      at.normal,
                      at.bend,
@@ -105,16 +104,65 @@ PACKMPI_INLINE void contact(Block<F>& b, int p, const Constants& c, const Reduce
                      vector_at<F>(b.in, F.layout().velocity, p),
                      spin_at<F>(b.in, p),
                      {},
-                     springs_at<F>(b, p)};
+                     {}};
   if constexpr (F.rolling) {
-    k = curvatures_at<F>(b, p, c);
+    const Curvatures k = curvatures_at<F>(b, p, c);
     // k_j s_j - k_i s_i from sums and differences; of equal radii k (s_j - s_i).
     meeting.spin = scaled(k.mean, spin_at<F>(b.again, p));
     if constexpr (F.graded) meeting.spin = sum(meeting.spin, k.half, meeting.s);
   }
-  const Force f = F.dimension == 3 ? contact_3d<F>(c, meeting) : contact_2d<F>(c, meeting);
+  return meeting;
+}
+
+/// Forces of entry p to integers, its springs to the rows.
+template <Features F>
+PACKMPI_INLINE void put_force(Block<F>& b, int p, const Constants& c, const Force& f, double scale) {
+  Curvatures k = {};
+  if constexpr (F.rolling) k = curvatures_at<F>(b, p, c);
   put<F>(b, p, f, k, scale);
   put_springs<F>(b, p, f.springs);
+}
+
+/// In 3D with memory the law is done in two loops: one would be a chain of roots and quotients longer than a processor
+/// looks ahead. What the second needs of entry p takes the rows that the first has used up.
+template <Features F>
+PACKMPI_INLINE void put_pressed(Block<F>& b, int p, const Pressed& at, const Vector& spin) {
+  constexpr int u = F.layout().velocity;
+  b.in[0][p] = at.n.x, b.in[1][p] = at.n.y, b.in[2][p] = at.n.z;
+  b.in[u][p] = at.u.x, b.in[u + 1][p] = at.u.y, b.in[u + 2][p] = at.u.z;
+  b.in[F.layout().radius][p] = at.now.overlap;
+  b.distance[p] = at.radius;
+  b.pressed[0][p] = at.normal, b.pressed[1][p] = at.now.stiffness;
+  b.pressed[2][p] = at.now.drag, b.pressed[3][p] = at.now.kept;
+  constexpr int s = F.layout().spin;
+  if constexpr (F.rolling) b.again[s][p] = spin.x, b.again[s + 1][p] = spin.y, b.again[s + 2][p] = spin.z;
+}
+
+template <Features F>
+PACKMPI_INLINE void hold_all(Block<F>& b, const Constants& c, double scale) {
+  constexpr int u = F.layout().velocity;
+  const Constants k = c;
+  const int filled = b.filled;
+  for (int p = 0; p < filled; ++p) {
+    const SpringState now = {0.0, b.pressed[1][p], b.pressed[2][p], b.pressed[3][p], b.in[F.layout().radius][p]};
+    const Pressed at = {vector_at<F>(b.in, 0, p), b.pressed[0][p], vector_at<F>(b.in, u, p), now, b.distance[p]};
+    Vector spin = {};
+    if constexpr (F.rolling) spin = spin_at<F>(b.again, p);
+    put_force<F>(b, p, k, hold_3d<F>(k, at, spin, springs_at<F>(b, p)), scale);
+  }
+}
+
+/// The contact of entry p, or what comes before hold_all().
+template <Features F>
+PACKMPI_INLINE void contact(Block<F>& b, int p, const Constants& c, const Reduced& reduced, const Touch& at,
+                            double scale) {
+  Meeting meeting = meeting_at<F>(b, p, c, reduced, at);
+  if constexpr (Block<F>::M::two_loops) {
+    put_pressed<F>(b, p, press_3d<F>(c, meeting), meeting.spin);
+  } else {
+    meeting.springs = springs_at<F>(b, p);
+    put_force<F>(b, p, c, F.dimension == 3 ? contact_3d<F>(c, meeting) : contact_2d<F>(c, meeting), scale);
+  }
 }
 
 /// All pairs of the block.
@@ -139,6 +187,7 @@ PACKMPI_INLINE void resolve_pairs(Block<F>& b, const Constants& c, const Periods
     if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], radius);
     contact<F>(b, p, k, reduced, touch(x, y, z, square, radius), scale);
   }
+  if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }
 
 /// All wall contacts of the block; rows 0 .. dimension-1 of `in` hold the normal, towards the wall, `distance` that of
@@ -155,6 +204,7 @@ PACKMPI_INLINE void resolve_walls(Block<F>& b, const Constants& c, double scale)
     if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], radius);
     contact<F>(b, p, k, reduced, {n, 0.0, radius - b.distance[p]}, scale);
   }
+  if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }
 
 }  // namespace packmpi::dynamics::PACKMPI_KERNEL

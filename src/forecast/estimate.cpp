@@ -16,6 +16,7 @@
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
+#include "scene/pair_channels.hpp"
 
 namespace packmpi::forecast {
 namespace {
@@ -177,7 +178,12 @@ double own_bytes(const scene::Scene& scene) {
   return growth * stored + remembered;
 }
 double list_bytes(const scene::Scene& scene) {
-  return growth * pair_bytes * pairs_a_particle[static_cast<std::size_t>(scene.box.dimension - 2)];
+  const double pairs = pairs_a_particle[static_cast<std::size_t>(scene.box.dimension - 2)];
+  const int stored = scene::stored_doubles(scene.features);
+  if (stored == 0) return growth * pair_bytes * pairs;
+  // What contacts remember, and once more, with two words each, where they touch, while the lists are made anew.
+  constexpr double touching = 0.75;
+  return pairs * (growth * pair_bytes + sizeof(double) * (stored + touching * (stored + 2)));
 }
 
 // Of a rank with `own` particles.

@@ -6,21 +6,22 @@ namespace packmpi::neighbor {
 
 void Baggage::clear() {
   head_ = {};
-  next_ = {};
-  partners_ = {};
-  values_ = {};
+  items_ = {};
 }
 
 void Baggage::add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs) {
-  std::int32_t& head = head_[static_cast<std::size_t>(slot)];
-  next_.push_back(head);
-  head = static_cast<std::int32_t>(partners_.size());
-  partners_.push_back(partner);
-  for (std::size_t c = 0; c < doubles_; ++c) values_.push_back(signs[c] * values[c * step]);
+  std::int64_t& head = head_[static_cast<std::size_t>(slot)];
+  const std::size_t at = items_.size();
+  items_.resize(at + each_);
+  double* out = items_.data() + at;
+  *out++ = std::bit_cast<double>(partner);
+  *out++ = std::bit_cast<double>(head);
+  for (std::size_t c = 0; c < doubles_; ++c) *out++ = signs[c] * values[c * step];
+  head = static_cast<std::int64_t>(at);
 }
 
 void Baggage::keep(std::span<const LocalIndex> kept) {
-  const std::vector<std::int32_t> before = std::move(head_);
+  const std::vector<std::int64_t> before = std::move(head_);
   head_.assign(kept.size(), none);
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto slot = static_cast<std::size_t>(kept[k]);
@@ -31,9 +32,8 @@ void Baggage::keep(std::span<const LocalIndex> kept) {
 void Baggage::permute(std::span<const LocalIndex> order) { keep(order); }
 
 const double* Baggage::find(LocalIndex slot, GlobalId partner) const noexcept {
-  if (static_cast<std::size_t>(slot) >= head_.size()) return nullptr;
-  for (std::int32_t k = head_[static_cast<std::size_t>(slot)]; k != none; k = next_[static_cast<std::size_t>(k)]) {
-    if (partners_[static_cast<std::size_t>(k)] == partner) return &values_[static_cast<std::size_t>(k) * doubles_];
+  for (std::int64_t k = first(slot); k != none; k = next(item(k))) {
+    if (Baggage::partner(item(k)) == partner) return item(k) + 2;
   }
   return nullptr;
 }

@@ -1,5 +1,6 @@
 /// What particles carry along of their contacts while there are no lists: from slot to slot and from rank to rank.
 #pragma once
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +15,7 @@ namespace packmpi::neighbor {
 /// at its higher id, and where they have different owners at the lower one, too. Local: no MPI.
 class Baggage {
  public:
-  explicit Baggage(int doubles) : doubles_(static_cast<std::size_t>(doubles)) {}
+  explicit Baggage(int doubles) : doubles_(static_cast<std::size_t>(doubles)), each_(doubles_ + 2) {}
 
   struct Item {
     GlobalId partner;
@@ -22,7 +23,9 @@ class Baggage {
   };
 
   void clear();  ///< frees the memory
-  [[nodiscard]] bool empty() const noexcept { return partners_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return items_.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return items_.size() / each_; }
+  void reserve(std::size_t contacts) { items_.reserve(contacts * each_); }
   /// Lists for `count` particles; those there are stay.
   void fit(LocalIndex count) { head_.resize(static_cast<std::size_t>(count), none); }
 
@@ -48,20 +51,25 @@ class Baggage {
   std::size_t read(std::span<const std::byte> in);
 
  private:
-  static constexpr std::int32_t none = -1;
+  static constexpr std::int64_t none = -1;
+  [[nodiscard]] std::int64_t first(LocalIndex slot) const noexcept {
+    const auto at = static_cast<std::size_t>(slot);
+    return at < head_.size() ? head_[at] : none;  // inserted since: none
+  }
+  [[nodiscard]] const double* item(std::int64_t k) const noexcept { return &items_[static_cast<std::size_t>(k)]; }
+  static GlobalId partner(const double* item) noexcept { return std::bit_cast<GlobalId>(item[0]); }
+  static std::int64_t next(const double* item) noexcept { return std::bit_cast<std::int64_t>(item[1]); }
+
   std::size_t doubles_;
-  std::vector<std::int32_t> head_;  // by slot, the first item
-  std::vector<std::int32_t> next_;  // by item
-  std::vector<GlobalId> partners_;
-  std::vector<double> values_;
+  std::size_t each_;                // doubles of an item
+  std::vector<std::int64_t> head_;  // by slot, where its first item begins
+  std::vector<double> items_;       // partner and place of the next one, bit by bit, then the stored doubles: one line
 };
 
 template <class See>
 void Baggage::each(LocalIndex slot, See see) const {
-  if (static_cast<std::size_t>(slot) >= head_.size()) return;  // inserted since
-  for (std::int32_t k = head_[static_cast<std::size_t>(slot)]; k != none; k = next_[static_cast<std::size_t>(k)]) {
-    const auto at = static_cast<std::size_t>(k);
-    see(Item{partners_[at], std::span(values_).subspan(at * doubles_, doubles_)});
+  for (std::int64_t k = first(slot); k != none; k = next(item(k))) {
+    see(Item{partner(item(k)), std::span(item(k) + 2, doubles_)});
   }
 }
 

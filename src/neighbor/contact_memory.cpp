@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "base/grow.hpp"
 #include "scene/pair_channels.hpp"
 
 namespace packmpi::neighbor {
@@ -30,6 +29,7 @@ void ContactMemory::pick_up(const particles::Store& store, const PairList& pairs
   listed_ = false;
   baggage_.clear();
   baggage_.fit(store.owned());
+  baggage_.reserve(expected_);
   const std::size_t entries = pairs.first.size();
   for (std::size_t p = 0; p < entries; ++p) {
     if (is_zero(pair_values_, entries, p)) continue;
@@ -47,6 +47,7 @@ void ContactMemory::pick_up(const particles::Store& store, const PairList& pairs
     if (is_zero(wall_values_, contacts, w)) continue;
     baggage_.add(walls.particle[w], wall_partner(walls.wall[w]), &wall_values_[w], contacts, the_same_.data());
   }
+  expected_ = baggage_.size() + baggage_.size() / 16;
 }
 
 void ContactMemory::lay_down(const particles::Store& store, const PairList& pairs, const WallList& walls) {
@@ -54,7 +55,12 @@ void ContactMemory::lay_down(const particles::Store& store, const PairList& pair
   owned_ = store.owned();
   ghost_ids_.assign(store.ids().begin() + owned_, store.ids().end());
   const auto lay = [&](std::vector<double>& values, std::size_t entries) {
-    resize_tightly(values, doubles_ * entries);
+    const std::size_t size = doubles_ * entries;
+    if (values.capacity() < size) {
+      values = {};  // or both would be there at once
+      values.reserve(size + size / 64);
+    }
+    values.resize(size);
     std::fill(values.begin(), values.end(), 0.0);
   };
   const auto put = [&](std::vector<double>& values, std::size_t entries, std::size_t entry, const double* from,

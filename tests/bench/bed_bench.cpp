@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -117,16 +118,21 @@ double ledger_in_steps(const run::Bed& bed, double steps_per_second) {
 }
 
 void measure(run::Bed& bed, std::int64_t steps, int runs) {
-  std::vector<double> rates;
+  std::vector<double> rates, costs;
+  const double rebuilding = bed.neighborhood.effort().rebuilding;
   const std::int64_t rebuilds = bed.neighborhood.rebuilds();
   for (int k = 0; k < runs; ++k) {
     bed.comm.barrier();
     const double start = MPI_Wtime();
+    const std::clock_t begin = std::clock();
     bed.stepper.advance(bed.store, bed.neighborhood, steps);
+    costs.push_back(bed.comm.max(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC));
     const double seconds = bed.comm.max(MPI_Wtime() - start);
     rates.push_back(static_cast<double>(bed.count) * static_cast<double>(steps) / seconds / bed.comm.size());
   }
   std::ranges::sort(rates);
+  std::ranges::sort(costs);
+  const double share = static_cast<double>(steps) * static_cast<double>(bed.count) / bed.comm.size();
   const observe::Contacts contacts =
       observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   const double bytes = bed.bytes_per_particle();
@@ -140,6 +146,13 @@ void measure(run::Bed& bed, std::int64_t steps, int runs) {
       bed.neighborhood.rebuilds() - rebuilds, steps * runs);
   fmt::print("particle-steps/s a core: median {:.2f}e6, least {:.2f}e6, most {:.2f}e6; {:.0f} bytes a particle\n",
              median * 1e-6, rates.front() * 1e-6, rates.back() * 1e-6, bytes);
+  fmt::print(
+      "processor time: median {:.1f} ns a particle-step, least {:.1f}, most {:.1f}; {:.0f} ns wall time a particle and "
+      "rebuild\n",
+      1e9 * costs[costs.size() / 2] / share, 1e9 * costs.front() / share, 1e9 * costs.back() / share,
+      1e9 * (bed.neighborhood.effort().rebuilding - rebuilding) /
+          static_cast<double>(std::max<std::int64_t>(bed.neighborhood.rebuilds() - rebuilds, 1)) /
+          static_cast<double>(bed.store.owned()));
   fmt::print("the ledger of a row of the step log costs {:.2f} steps\n", row);
 }
 

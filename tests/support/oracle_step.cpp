@@ -83,13 +83,16 @@ struct Meeting {
   Vec3 u, s, spin;
 };
 
+/// So small a drag stands for none.
+constexpr double tiny_drag = 1e-100;
+
 /// Where a stored vector is now: in the tangent plane, as long as before times what loading or unloading leaves of it.
 Vec3 turn(const Vec3& stored, const Vec3& n, double kept, double overlap) {
   const double off = dot(stored, n, 3);
   Vec3 flat{};
   for (std::size_t a = 0; a < 3; ++a) flat[a] = stored[a] + -off * n[a];
-  const double square = dot(flat, flat, 3);
-  const double part = std::sqrt((square + off * off) * kept / (square * overlap + tiny));
+  const double square = 4.0 * dot(flat, flat, 3);
+  const double part = (square + 3.0 * (off * off)) * (2.0 * kept) / ((square + off * off) * (overlap + kept) + tiny);
   for (double& x : flat) x = part * x;
   return flat;
 }
@@ -101,16 +104,18 @@ Vec3 drag_along(Vec3& spring, const Vec3& u, double k, double h, double dt, doub
     elastic[a] = k * spring[a];
     force[a] = elastic[a] + h * u[a];
   }
-  const double share = limit / std::sqrt(dot(force, force, 3) + tiny);
+  const double strength = std::sqrt(dot(force, force, 3) + tiny);
+  const double inverse = 1.0 / (strength * (h + tiny_drag));
+  const double share = limit * ((h + tiny_drag) * inverse);
   for (double& x : force) x = std::min(1.0, share) * x;
-  for (std::size_t a = 0; a < 3; ++a) spring[a] += dt / (h + tiny) * (force[a] + -1.0 * elastic[a]);
+  for (std::size_t a = 0; a < 3; ++a) spring[a] += dt * (strength * inverse) * (force[a] + -1.0 * elastic[a]);
   return force;
 }
 double drag_along(double& spring, double u, double k, double h, double dt, double limit) {
   const double elastic = k * spring;
   const double trial = elastic + h * u;
   const double force = std::copysign(std::min(std::fabs(trial), limit), trial);
-  spring += dt / (h + tiny) * (force - elastic);
+  spring += dt / (h + tiny_drag) * (force - elastic);
   return force;
 }
 
@@ -130,7 +135,8 @@ void remember(const Features& f, const StepData& data, const LawConstants& c, co
   if (f.dimension == 2) {
     const double across = at.u[1] * at.n[0] - at.u[0] * at.n[1];
     const double slip = f.rotation ? across - data.law.spin_slip * at.s[2] : across;
-    const double part = std::sqrt(kept(across * across) / (at.overlap + tiny));
+    const double left = kept(across * across);
+    const double part = 2.0 * left / (at.overlap + left + tiny);
     springs.slip[0] *= part;
     e.moment[2] = drag_along(springs.slip[0], slip, k, h, dt, c.friction * limit);
     e.force = {-(e.moment[2] * at.n[1]), e.moment[2] * at.n[0], 0.0};
@@ -155,7 +161,7 @@ void remember(const Features& f, const StepData& data, const LawConstants& c, co
   Vec3 rolling{};
   for (std::size_t a = 0; a < 3; ++a) rolling[a] = at.reduced_radius * (at.spin[a] + -about * at.n[a]);
   springs.roll = turn(springs.roll, at.n, left, at.overlap);
-  springs.twist *= std::sqrt(left / (at.overlap + tiny));
+  springs.twist *= 2.0 * left / (at.overlap + left + tiny);
   const Vec3 against_rolling = drag_along(springs.roll, rolling, k, h, dt, c.rolling_friction * limit);
   const double against_twist =
       drag_along(springs.twist, at.reduced_radius * about, k, h, dt, c.twisting_friction * limit);
