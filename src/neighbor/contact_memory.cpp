@@ -94,6 +94,7 @@ void ContactMemory::give(const particles::Store& store, std::span<const ContactH
   listed_ = false;
   baggage_.fit(store.owned());
   std::vector<std::pair<GlobalId, LocalIndex>> slots;
+  slots.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) slots.emplace_back(store.ids()[static_cast<std::size_t>(i)], i);
   std::ranges::sort(slots);
   for (const ContactHistory& contact : histories) {

@@ -225,6 +225,7 @@ void Neighborhood::complete_borders(const particles::Store& store) {
                       });
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), comm::Purpose::migration);
   std::vector<std::pair<GlobalId, LocalIndex>> slots;
+  slots.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) slots.emplace_back(store.ids()[static_cast<std::size_t>(i)], i);
   std::ranges::sort(slots);
   std::vector<double> values(memory_.doubles());
