@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/fnv.hpp"
 #include "base/regular_file.hpp"
 #include "disk/scatter.hpp"
 
@@ -23,14 +24,6 @@ constexpr std::int64_t number_bytes = 8, column_bytes = 4 * number_bytes;
 constexpr std::int64_t tail_bytes = 4 * number_bytes + static_cast<std::int64_t>(mark.size());
 constexpr std::int64_t most_columns = 64;
 constexpr std::int64_t batch_bytes = std::int64_t{1} << 20;
-
-constexpr std::uint64_t fnv_start = 0xcbf29ce484222325ULL;
-
-/// FNV-1a goes on.
-std::uint64_t add_bytes(std::uint64_t hash, std::string_view bytes) {
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
-}
 
 /// The finaliser of splitmix64, as in particles::digest().
 constexpr std::uint64_t stir(std::uint64_t x) {
@@ -114,7 +107,7 @@ Seal read_seal(const Bytes& file) {
   seal.end = take_size(rest);
   seal.frame = take(rest);
   const std::string_view before_digest(tail.data(), static_cast<std::size_t>(3 * number_bytes));
-  if (take(rest) != add_bytes(add_bytes(fnv_start, table), before_digest) || seal.end != begin) refuse_seal();
+  if (take(rest) != fnv_add(fnv_add(fnv_start, table), before_digest) || seal.end != begin) refuse_seal();
   rest = table;
   for (std::int64_t k = 0; k < count; ++k) {
     SealedRows column;
@@ -148,7 +141,7 @@ std::uint64_t frame_digest(const Seal& seal, const ReadBytes& read) {
   std::int64_t done = 0;
   const auto add = [&](std::int64_t end) {
     for (; done < end; done += std::min(batch_bytes, end - done)) {
-      hash = add_bytes(hash, read(done, std::min(batch_bytes, end - done)));
+      hash = fnv_add(hash, read(done, std::min(batch_bytes, end - done)));
     }
   };
   for (const SealedRows& column : in_order(seal)) {
@@ -170,9 +163,11 @@ std::string to_bytes(const Seal& seal) {
   put(bytes, static_cast<std::int64_t>(seal.columns.size()));
   put(bytes, seal.end);
   put(bytes, seal.frame);
-  put(bytes, add_bytes(fnv_start, bytes));
+  put(bytes, fnv_add(fnv_start, bytes));
   return bytes + std::string(mark);
 }
+
+std::uint64_t digest_of(const Seal& seal) { return fnv_add(fnv_start, to_bytes(seal)); }
 
 Seal check_frame(const std::string& path) {
   const Bytes file(path);

@@ -39,6 +39,8 @@ using ReadBytes = std::function<std::string(std::int64_t begin, std::int64_t siz
 
 /// The seal as it stands in the file.
 [[nodiscard]] std::string to_bytes(const Seal& seal);
+/// A number that stands for all of it.
+[[nodiscard]] std::uint64_t digest_of(const Seal& seal);
 
 /// Rank-local. The seal of PATH, with all that are no rows verified: HDF5 may open it. Throws Error(io_failure), words
 /// without the path.
