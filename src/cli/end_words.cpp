@@ -17,7 +17,7 @@ const std::vector<EndWords>& exit_code_words() {
                                            {"3", "finished, but a target was missed"},
                                            {"4", "numerical failure"},
                                            {"5", "another file is not there, damaged, or cannot be written"},
-                                           {"6", "--restart finds no checkpoint to go on from"},
+                                           {"6", "--restart has nothing to go on from: damaged, or of another scene"},
                                            {"75", "stopped early with a checkpoint: --restart auto goes on"}};
   return lines;
 }

@@ -15,14 +15,15 @@ namespace packmpi::cli {
 namespace {
 
 std::string describe(const std::string& path, const pack::RunState& state) {
+  const pack::Progress& p = state.progress;
   constexpr std::array<const char*, 3> phases{"before an insertion", "settling", "final stage"};
   return fmt::format(
       "{}: a checkpoint, valid\n  layer {}, {}, step {} ({} of this phase)\n  {} particles in {}D, {}\n  serial {}, by "
       "packmpi "
       "{} ({})\n",
-      path, state.first_ids.size(), phases.at(static_cast<std::size_t>(state.phase)), state.steps, state.done,
-      state.count, state.dimension, state.rotation ? "with spin" : "without spin", state.serial,
-      text::printable(state.version), text::printable(state.git));
+      path, p.first_ids.size(), phases.at(static_cast<std::size_t>(p.now.phase)), p.steps, p.now.done, p.count,
+      state.dimension, state.rotation ? "with spin" : "without spin", state.serial, text::printable(state.version),
+      text::printable(state.git));
 }
 
 // A number of the particle datasets' bits (FNV-1a over their bytes in turn): equal packs have equal ones.

@@ -21,6 +21,7 @@
 #include "run/analyze.hpp"
 #include "run/ensemble.hpp"
 #include "run/files.hpp"
+#include "run/finished.hpp"
 #include "run/make_pack.hpp"
 #include "run/signals.hpp"
 #include "scene/expectation.hpp"
@@ -60,8 +61,14 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
 
 int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& options) {
   const run::Signals signals;
+  if (options.restart == "auto" && !options.force) {
+    if (const auto finished = run::finished_run(comm, scene, options)) {
+      if (comm.rank() == 0) print(finished->words + "\n");
+      return static_cast<int>(finished->code);
+    }
+  }
   const report::RunRecord record = run::make_pack(comm, scene, options);
-  const bool met = run::targets_met(record);
+  const bool met = record.targets_met;
   if (comm.rank() == 0) {
     print(report::to_table(record) + "\n");
     log::info(fmt::format("{} in {}", met ? "done" : "finished, but a target was missed",

@@ -228,10 +228,10 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   state.git = record.git;
   state.dimension = record.dimension;
   state.rotation = scene.in.dynamics.rotation;
-  state.count = e.particles.value;
-  state.layers = record.layers;
-  state.row = some_row();
-  for (std::int64_t layer = 0; layer < e.layers.value; ++layer) state.first_ids.push_back(layer * e.a_layer);
+  state.progress.count = e.particles.value;
+  state.progress.layers = record.layers;
+  state.progress.now.row = some_row();
+  for (std::int64_t layer = 0; layer < e.layers.value; ++layer) state.progress.first_ids.push_back(layer * e.a_layer);
   e.checkpoint_bytes = pack::checkpoint_bytes(scene.features.layout(), state);
   const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.settling.time_step;
   e.step_log_bytes = std::llround(step_row_bytes * std::max(1.0, e.duration / interval));

@@ -44,12 +44,12 @@ struct Clock {
 void insert(run::Bed& bed, Clock& clock) {
   const Stopwatch watch;
   bed.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.first_ids.size()),
+  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.progress.first_ids.size()),
                                 .bottom = bed.top(),
                                 .thickness = bed.scene.in.layers.thickness,
-                                .first_id = bed.count};
-  bed.first_ids.push_back(bed.count);
-  bed.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
+                                .first_id = bed.progress.count};
+  bed.progress.first_ids.push_back(bed.progress.count);
+  bed.progress.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
   clock.inserting += watch.seconds();
 }
 
@@ -61,8 +61,7 @@ void settle_for(run::Bed& bed, double seconds, Clock& clock) {
   bed.balance();
   for (std::int64_t done = 0; done < most && watch.seconds() < seconds;) {
     const std::int64_t next = std::min(chunk, most - done);
-    bed.stepper.advance(bed.store, bed.neighborhood, next, bed.moment());
-    bed.steps += next;
+    bed.advance(next);
     done += next;
   }
   clock.settling += watch.seconds();
@@ -80,11 +79,11 @@ report::Probe probe(const scene::Scene& scene, double seconds) {
     insert(bed, clock);
     settle_for(bed, seconds / probe_layers, clock);
   }
-  return {.particles = bed.count,
-          .steps = bed.steps,
+  return {.particles = bed.progress.count,
+          .steps = bed.progress.steps,
           .seconds = clock.inserting + clock.settling,
-          .particle_steps_per_second = static_cast<double>(bed.particle_steps()) / clock.settling,
-          .insertions_per_second = static_cast<double>(bed.count) / clock.inserting};
+          .particle_steps_per_second = static_cast<double>(bed.progress.particle_steps) / clock.settling,
+          .insertions_per_second = static_cast<double>(bed.progress.count) / clock.inserting};
 }
 
 }  // namespace packmpi::forecast

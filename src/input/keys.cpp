@@ -295,7 +295,7 @@ std::vector<Key> program_keys() {
     word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
          "How lateral columns are shared among ranks: slices, pencils, or METIS parts. Changes no bit of the pack."),
     whole("ensemble.sets", at(&Input::ensemble, &Ensemble::sets), between(1, 1 << 12), "1", "Sets of packs, of one scene and different seeds."),
-    whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 12), "1", "Packs of a set. The k-th pack of all has the seed of the scene plus k - 1, and the bits of a run of its own with it."),
+    whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 12), "1", "Packs of a set. Pack p of set s has the seed of the scene + 10000 (s - 1) + p - 1, and the bits of a run of its own with it."),
     word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("10min")",
          "Wall time between checkpoints (\"30 s\", \"10min\", \"2h\"), or time steps (\"5000 steps\"); \"off\": only when told to stop."),
     word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/fnv.hpp"
 #include "base/memory.hpp"
 #include "disk/scatter.hpp"
 #include "disk/whole_file.hpp"
@@ -87,7 +88,7 @@ void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const Ru
   disk::h5::set_fixed_attribute(file, "format", "packmpi-checkpoint");
   disk::h5::set_attribute(file, "format_version", checkpoint_version);
   disk::h5::set_attribute(file, "particle_digest", digest);
-  disk::h5::set_attribute(file, "text_digest", hash_of(text + state.effective_input));
+  disk::h5::set_attribute(file, "text_digest", fnv_add(fnv_add(fnv_start, text), state.effective_input));
   (void)disk::h5::create_group(file, "/particles");
   write_bytes(file, "/state", text);
   write_bytes(file, "/effective_input", state.effective_input);
@@ -101,10 +102,10 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
   const Occupation now("the checkpoint on its way to the file");
   const disk::h5::Quiet quiet;
   const std::uint64_t digest = digest_of(comm, stores);
-  const disk::IdBlocks blocks{state.count, comm.size()};
+  const disk::IdBlocks blocks{state.progress.count, comm.size()};
   std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
   const GlobalId begin = blocks.begin(comm.rank());
-  const disk::h5::Slab slab{static_cast<hsize_t>(state.count), static_cast<hsize_t>(begin), rows.size()};
+  const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), static_cast<hsize_t>(begin), rows.size()};
   comm::agree_on(comm, [&] {
     const bool all = static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin;
     const auto out_of_order = [](const RecordRow& a, const RecordRow& b) { return a.id >= b.id; };
@@ -117,7 +118,7 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
 }
 
 std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state) {
-  const disk::h5::Slab slab{static_cast<hsize_t>(state.count), 0, 0};
+  const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), 0, 0};
   const std::vector<RecordRow> none;
   const std::vector<disk::h5::Column> plan = plan_columns(slab, none, layout);
   return disk::whole_file_bytes(plan, [&](hid_t file) { write_frame(file, plan, state, 0); });

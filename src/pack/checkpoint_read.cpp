@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "base/fnv.hpp"
 #include "disk/scatter.hpp"
 #include "disk/sealed_file.hpp"
 #include "pack/checkpoint.hpp"
@@ -36,15 +37,16 @@ disk::SealedFile open_file(const std::string& path) {
 RunState state_in(const disk::SealedFile& file) {
   const std::string text = file.bytes("/state");
   const std::string scene = file.bytes("/effective_input");
-  if (hash_of(text + scene) != file.number<std::uint64_t>("/", "text_digest")) {
+  if (fnv_add(fnv_add(fnv_start, text), scene) != file.number<std::uint64_t>("/", "text_digest")) {
     refuse_checkpoint("the digest of its state and scene is wrong: the file is damaged");
   }
   const bool former = file.number<std::int64_t>("/", "format_version") < checkpoint_version;
-  RunState state = state_of(former ? state_in_present_names(text) : text);
+  RunState state = former ? former_state_of(state_in_present_names(text)) : state_of(text);
   state.effective_input = former ? scene_in_present_names(scene) : scene;
-  const bool valid = state.count >= 0 && state.steps >= 0 && state.done >= 0 && state.dimension >= 2 &&
-                     state.dimension <= 3 && std::ranges::is_sorted(state.first_ids) &&
-                     state.first_ids.size() == state.layers.size() + (state.phase == Phase::settling ? 1 : 0);
+  const Progress& p = state.progress;
+  const bool valid = p.count >= 0 && p.steps >= 0 && p.now.done >= 0 && state.dimension >= 2 && state.dimension <= 3 &&
+                     std::ranges::is_sorted(p.first_ids) &&
+                     p.first_ids.size() == p.layers.size() + (p.now.phase == Phase::settling ? 1 : 0);
   if (!valid) refuse_checkpoint("its state contradicts itself");
   return state;
 }
@@ -114,9 +116,9 @@ RunState read_checkpoint(const comm::Comm& comm, const std::string& path, partic
       if (state.dimension != store.layout().dimension || state.rotation != store.layout().rotation) {
         refuse_checkpoint("it is of another dimension, or with and without rotation");
       }
-      const disk::IdBlocks blocks{state.count, comm.size()};
+      const disk::IdBlocks blocks{state.progress.count, comm.size()};
       const GlobalId begin = blocks.begin(comm.rank());
-      read_particles(file, {state.count, begin, blocks.begin(comm.rank() + 1) - begin}, store);
+      read_particles(file, {state.progress.count, begin, blocks.begin(comm.rank() + 1) - begin}, store);
     });
   });
   const auto mine = static_cast<std::int64_t>(particles::digest(store));

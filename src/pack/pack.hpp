@@ -54,9 +54,21 @@ struct PackRows {
 /// not what was written.
 [[nodiscard]] PackRows read_pack(const std::string& path);
 
-/// Collective. Throws Error(io_failure) unless every byte of the pack is as it was written. Cost: one reading of it
-/// all, shared by the ranks.
-void check_pack(const comm::Comm& comm, const std::string& path);
+/// Collective. Throws Error(io_failure) unless every byte of the pack is as it was written. Returns its seal_of().
+/// Cost: one reading of it all, shared by the ranks.
+std::uint64_t check_pack(const comm::Comm& comm, const std::string& path);
+
+/// A number that no other pack has: a digest of its seal, which has digests of all its bytes. Its rows are not looked
+/// at. Rank-local. Throws Error(io_failure).
+[[nodiscard]] std::uint64_t seal_of(const std::string& path);
+
+/// What a pack says of its making.
+struct PackOrigin {
+  std::string scene;         ///< the effective input, TOML, in the keys of today
+  std::string version, git;  ///< of the program that wrote it
+};
+/// Rank-local; rows are not looked at. Throws Error(io_failure).
+[[nodiscard]] PackOrigin read_origin(const std::string& path);
 
 /// One rank's share of a pack, and the scene it was made from.
 struct PackSlice {

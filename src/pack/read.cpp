@@ -54,7 +54,7 @@ PackRows read_pack(const std::string& path) {
   });
 }
 
-void check_pack(const comm::Comm& comm, const std::string& path) {
+std::uint64_t check_pack(const comm::Comm& comm, const std::string& path) {
   std::vector<std::int64_t> digests;
   disk::Seal seal;
   comm::agree_on(comm, [&] {
@@ -63,6 +63,17 @@ void check_pack(const comm::Comm& comm, const std::string& path) {
   });
   comm.sum(std::span(digests));
   comm::agree_on(comm, [&] { told(path, [&] { disk::check_rows(seal, digests); }); });
+  return disk::digest_of(seal);
+}
+
+std::uint64_t seal_of(const std::string& path) {
+  return told(path, [&] { return disk::digest_of(disk::check_frame(path)); });
+}
+
+PackOrigin read_origin(const std::string& path) {
+  return read_from(path, [](const PackFile& file) {
+    return PackOrigin{file.scene(), file.text("/provenance", "version"), file.text("/provenance", "git")};
+  });
 }
 
 PackSlice read_slice(const std::string& path, Rank rank, int ranks) {

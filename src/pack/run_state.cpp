@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "base/error.hpp"
 
@@ -13,10 +14,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Calls visit(name, member) for every member of a layer's row. A member that is added to the row and not here does not
-/// compile.
+// each_field(struct, visit) calls visit(name, field) for every field, for reading and for writing. A field that is
+// added to a struct and not here does not compile: the structured bindings count them.
+
 template <class Row, class Visit>
-void each_member(Row& row, Visit visit) {
+requires std::is_same_v<std::remove_const_t<Row>, report::LayerRow>
+void each_field(Row& row, Visit visit) {
   auto& [inserted, total, attempts, target_fraction, achieved_fraction, region_bottom, height, top, duration, steps,
          kinetic_per_mgd, max_overlap, coordination, stop_reason] = row;
   visit("inserted", inserted);
@@ -35,31 +38,66 @@ void each_member(Row& row, Visit visit) {
   visit("stop_reason", stop_reason);
 }
 
-/// The same for the state's single values.
-template <class State, class Visit>
-void each_value(State& state, Visit visit) {
-  visit("serial", state.serial);
-  visit("version", state.version);
-  visit("git", state.git);
-  visit("dimension", state.dimension);
-  visit("rotation", state.rotation);
-  visit("first_ids", state.first_ids);
-  visit("count", state.count);
-  visit("energy_given", state.energy_given);
-  visit("steps", state.steps);
-  visit("particle_steps", state.particle_steps);
-  visit("compaction_rate", state.compaction_rate);
-  visit("moving_from", state.moving_from);
-  visit("height", state.height);
-  visit("relaxations", state.relaxations);
-  visit("relaxation_steps", state.relaxation_steps);
-  visit("height_before_relaxation", state.height_before_relaxation);
-  visit("done", state.done);
-  visit("phi_before", state.phi_before);
-  visit("mean_height", state.mean_height);
-  visit("calm_since", state.calm_since);
-  visit("phi_calm", state.phi_calm);
+template <class Mark, class Visit>
+requires std::is_same_v<std::remove_const_t<Mark>, report::SeriesMark>
+void each_field(Mark& mark, Visit visit) {
+  auto& [rows, in_file, digest] = mark;
+  visit("rows", rows);
+  visit("in_file", in_file);
+  visit("digest", digest);
 }
+
+template <class Now, class Visit>
+requires std::is_same_v<std::remove_const_t<Now>, PhaseProgress>
+void each_field(Now& now, Visit visit) {
+  auto& [phase, row, done, phi_before, mean_height, calm_since, phi_calm, told] = now;
+  visit("phase", phase);
+  visit("row", row);
+  visit("done", done);
+  visit("phi_before", phi_before);
+  visit("mean_height", mean_height);
+  visit("calm_since", calm_since);
+  visit("phi_calm", phi_calm);
+  visit("told", told);
+}
+
+// The present phase's fields stand among the others.
+template <class P, class Visit>
+requires std::is_same_v<std::remove_const_t<P>, Progress>
+void each_field(P& progress, Visit visit) {
+  auto& [first_ids, count, moving_from, energy_given, steps, relaxation_steps, particle_steps, layers, height,
+         compaction_rate, relaxations, height_before_relaxation, series, now] = progress;
+  visit("first_ids", first_ids);
+  visit("count", count);
+  visit("moving_from", moving_from);
+  visit("energy_given", energy_given);
+  visit("steps", steps);
+  visit("relaxation_steps", relaxation_steps);
+  visit("particle_steps", particle_steps);
+  visit("layers", layers);
+  visit("height", height);
+  visit("compaction_rate", compaction_rate);
+  visit("relaxations", relaxations);
+  visit("height_before_relaxation", height_before_relaxation);
+  visit("series", series);
+  each_field(now, visit);
+}
+
+// The scene is a dataset of its own.
+template <class State, class Visit>
+requires std::is_same_v<std::remove_const_t<State>, RunState>
+void each_field(State& state, Visit visit) {
+  auto& [serial, effective_input, version, git, dimension, rotation, progress] = state;
+  visit("serial", serial);
+  visit("version", version);
+  visit("git", git);
+  visit("dimension", dimension);
+  visit("rotation", rotation);
+  each_field(progress, visit);
+}
+
+template <class T>
+constexpr bool is_struct = std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark>;
 
 constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
@@ -69,43 +107,67 @@ Phase phase_of(const std::string& name) {
   return static_cast<Phase>(found - phase_names.begin());
 }
 
-Json row_to_json(const report::LayerRow& row) {
-  Json object;
-  each_member(row, [&](const char* name, const auto& value) { object[name] = value; });
-  return object;
+template <class T>
+Json json_of(const T& value) {
+  if constexpr (std::is_same_v<T, Phase>) {
+    return std::string(phase_names.at(static_cast<std::size_t>(value)));
+  } else if constexpr (std::is_same_v<T, std::vector<report::LayerRow>>) {
+    Json rows = Json::array();
+    for (const report::LayerRow& row : value) rows.push_back(json_of(row));
+    return rows;
+  } else if constexpr (is_struct<T>) {
+    Json object;
+    each_field(value, [&](const char* name, const auto& field) { object[name] = json_of(field); });
+    return object;
+  } else {
+    return value;
+  }
 }
 
-report::LayerRow row_of(const Json& object) {
-  report::LayerRow row;
-  each_member(row, [&](const char* name, auto& value) { object.at(name).get_to(value); });
-  return row;
+template <class T>
+void read(const Json& json, T& value) {
+  if constexpr (std::is_same_v<T, Phase>) {
+    value = phase_of(json.get<std::string>());
+  } else if constexpr (std::is_same_v<T, std::vector<report::LayerRow>>) {
+    for (const Json& row : json) read(row, value.emplace_back());
+  } else if constexpr (is_struct<T>) {
+    each_field(value, [&](const char* name, auto& field) { read(json.at(name), field); });
+  } else {
+    json.get_to(value);
+  }
+}
+
+// Fields that are not there keep what they have, if they `may` be absent.
+RunState parse_state(const std::string& text, bool may, RunState state) {
+  try {
+    const Json root = Json::parse(text);
+    each_field(state, [&](const char* name, auto& field) {
+      if (!may || root.contains(name)) read(root.at(name), field);
+    });
+  } catch (const Json::exception& error) {
+    throw Error(ExitCode::bad_checkpoint, fmt::format("/state is not what it should be: {}", error.what()));
+  }
+  return state;
 }
 
 }  // namespace
 
 std::string to_text(const RunState& state) {
   Json root;
-  each_value(state, [&](const char* name, const auto& value) { root[name] = value; });
-  root["phase"] = phase_names.at(static_cast<std::size_t>(state.phase));
-  root["row"] = row_to_json(state.row);
-  root["layers"] = Json::array();
-  for (const report::LayerRow& row : state.layers) root["layers"].push_back(row_to_json(row));
+  each_field(state, [&](const char* name, const auto& field) { root[name] = json_of(field); });
   return root.dump(1);  // doubles: the shortest digits that give the same bits
 }
 
 RunState state_of(const std::string& text) {
-  RunState state;
-  try {
-    const Json root = Json::parse(text);
-    each_value(state, [&](const char* name, auto& value) { root.at(name).get_to(value); });
-    state.phase = phase_of(root.at("phase").get<std::string>());
-    state.row = row_of(root.at("row"));
-    for (const Json& row : root.at("layers")) state.layers.push_back(row_of(row));
-  } catch (const Json::exception& error) {
-    throw Error(ExitCode::bad_checkpoint, fmt::format("/state is not what it should be: {}", error.what()));
-  }
+  RunState state = parse_state(text, false, {});
   if (to_text(state) != text) throw Error(ExitCode::bad_checkpoint, "/state is not what it should be: it says more");
   return state;
+}
+
+RunState former_state_of(const std::string& text) {
+  RunState unknown;
+  unknown.progress.series.in_file = -1;
+  return parse_state(text, true, unknown);
 }
 
 }  // namespace packmpi::pack

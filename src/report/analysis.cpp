@@ -5,6 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "report/json_seal.hpp"
 #include "report/size_words.hpp"
 
 namespace packmpi::report {
@@ -39,7 +40,7 @@ Json order(const observe::Order& o, int dimension) {
 
 }  // namespace
 
-std::string to_json(const observe::Analysis& a, int dimension) {
+std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pack_seal) {
   Json root;
   root["format"] = "packmpi-analysis";
   root["format_version"] = 2;
@@ -80,6 +81,7 @@ std::string to_json(const observe::Analysis& a, int dimension) {
                    {"d50", "m"},
                    {"d60", "m"},
                    {"d90", "m"}};
+  root["seal"] = {{"pack", hexadecimal(pack_seal)}};
   return root.dump(2) + "\n";
 }
 

@@ -4,13 +4,12 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/error.hpp"
+#include "report/summary.hpp"
 
 namespace packmpi::report {
 namespace {
@@ -53,14 +52,10 @@ EnsembleRow ensemble_row(int set, int pack, std::uint64_t seed, int code, const 
   EnsembleRow row{.set = set, .pack = pack, .seed = seed, .code = code};
   row.values.fill(std::numeric_limits<double>::quiet_NaN());
   if (summary.empty()) return row;
-  std::ifstream file(summary);
-  const Json json = Json::parse(file, nullptr, false);
-  if (json.is_discarded() || !json.contains("achieved")) {
-    throw Error(ExitCode::io_failure, summary + " is no summary of a pack; make that pack anew");
-  }
+  const Summary read = read_summary(summary);
   for (std::size_t q = 0; q < row.values.size(); ++q) {
-    const Json& got = json["achieved"];
-    if (got.contains(ensemble_quantities[q])) row.values[q] = got[ensemble_quantities[q]].get<double>();
+    const auto found = read.achieved.find(ensemble_quantities[q]);
+    if (found != read.achieved.end()) row.values[q] = found->second;
   }
   return row;
 }

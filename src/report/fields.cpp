@@ -52,7 +52,8 @@ std::vector<disk::Field> achieved_fields(const RunRecord& r) {
           {"relaxation_steps", "", r.relaxation_steps},
           {"height_before_relaxation", "m", r.height_before_relaxation},
           {"reached", "", r.reached},
-          {"stop_reason", "", r.stop_reason}};
+          {"stop_reason", "", r.stop_reason},
+          {"targets_met", "", r.targets_met}};
 }
 
 std::vector<disk::Field> audit_fields(const Audit& a) {
@@ -77,6 +78,8 @@ std::vector<disk::Field> provenance_fields(const RunRecord& r) {
           {"ranks", "", std::int64_t{r.ranks}},
           {"decomposition", "", r.decomposition},
           {"wall_seconds", "s", r.wall_seconds},
+          {"series_rows", "", r.series_rows},
+          {"series_rows_in_file", "", r.series_rows_in_file},
           {"particle_steps_per_second", "1/s", r.particle_steps_per_second},
           {"bytes_per_particle", "", r.bytes_per_particle}};
 }

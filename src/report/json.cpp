@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/fields.hpp"
+#include "report/json_seal.hpp"
 #include "report/report.hpp"
 #include "report/size_words.hpp"
 
@@ -74,6 +75,8 @@ std::string to_json(const RunRecord& record) {
   root["moving_share"] = moving_share(record);
   root["units"] = std::move(units);
   root["provenance"] = to_object(provenance_fields(record));
+  const std::string digest = hexadecimal(digest_of(root));
+  root["seal"] = {{"pack", hexadecimal(record.pack_seal)}, {"summary", digest}};
   // Text from outside may be no UTF-8; a wrong byte is replaced, not an exception at the end of a long run.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/fnv.hpp"
 #include "base/types.hpp"
 #include "observe/size_match.hpp"
 
@@ -26,6 +27,13 @@ struct LayerRow {
   double max_overlap = 0.0;      ///< largest overlap / smaller radius
   double coordination = 0.0;     ///< mean touching particles
   std::string stop_reason;       ///< "duration", "settled"
+};
+
+/// What NAME.steps.csv holds, so that a run that goes on knows whether the series is whole.
+struct SeriesMark {
+  std::int64_t rows = 0;             ///< since the beginning of the run
+  std::int64_t in_file = 0;          ///< of them in the file: fewer, once a series was found that was not whole
+  std::uint64_t digest = fnv_start;  ///< of those, without the column of rebuilds, which depends on the ranks
 };
 
 /// The final audit: what must be true of a pack.
@@ -80,6 +88,7 @@ struct RunRecord {
   double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
   bool reached = false;                   ///< target height reached
   std::string stop_reason;
+  bool targets_met = false;  ///< run::targets_met()
   std::vector<LayerRow> layers;
   Audit audit;
   // how (not the same from run to run)
@@ -87,6 +96,10 @@ struct RunRecord {
   std::string decomposition, version, git, compiler, architecture;
   std::string petsc_options;  ///< all that PETSc had, whoever gave them
   double wall_seconds = 0.0;
+  std::uint64_t pack_seal = 0;                            ///< of the pack, once it is written (pack::seal_of())
+  std::int64_t steps_here = 0;                            ///< of this process: not those before a restart
+  std::int64_t series_rows = 0, series_rows_in_file = 0;  ///< of NAME.steps.csv: told, and there
+  std::int64_t series_rows_lost = 0;                      ///< that this process could not write
   double particle_steps_per_second = 0.0;
   double bytes_per_particle = 0.0;  ///< worst rank
   // what it cost, on rank 0; empty on the others

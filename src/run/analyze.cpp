@@ -42,7 +42,7 @@ void take_share(const pack::PackRows& rows, particles::Store& store) {
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
   const Occupation now("the analysis of the pack");
-  pack::check_pack(comm, path);
+  const std::uint64_t seal = pack::check_pack(comm, path);
   pack::PackSlice slice;
   double range = 0.0;
   scene::Scene scene;
@@ -62,7 +62,7 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   const observe::Analysis analysis = observe::analyse({comm, scene, bed.store, bed.neighborhood, range});
   const std::filesystem::path pack(path);
   disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
-                   report::to_json(analysis, scene.box.dimension));
+                   report::to_json(analysis, scene.box.dimension, seal));
   return report::to_table(analysis, scene.box.dimension);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/log.hpp"
+#include "base/timer.hpp"
 #include "observe/measure.hpp"
 
 namespace packmpi::run {
@@ -18,27 +19,35 @@ Bed::Bed(const comm::Comm& world, const scene::Scene& what)
 
 void Bed::freeze_older() {
   const auto window = static_cast<std::size_t>(scene.in.dynamics.window);
-  if (window == 0 || first_ids.size() <= window) return;
-  const GlobalId before = moving_from;
-  moving_from = first_ids[first_ids.size() - window];
-  energy_given -= observe::energy_of(comm, store, scene, before, moving_from);
-  neighborhood.freeze(store, moving_from);
+  if (window == 0 || progress.first_ids.size() <= window) return;
+  const GlobalId before = progress.moving_from;
+  progress.moving_from = progress.first_ids[progress.first_ids.size() - window];
+  progress.energy_given -= observe::energy_of(comm, store, scene, before, progress.moving_from);
+  neighborhood.freeze(store, progress.moving_from);
 }
 
 void Bed::release() {
-  if (moving_from == 0) return;
-  const GlobalId before = moving_from;
-  moving_from = 0;
+  if (progress.moving_from == 0) return;
+  const GlobalId before = progress.moving_from;
+  progress.moving_from = 0;
   neighborhood.release(store);
-  energy_given += observe::energy_of(comm, store, scene, 0, before);
+  progress.energy_given += observe::energy_of(comm, store, scene, 0, before);
+}
+
+void Bed::advance(std::int64_t steps) {
+  const Stopwatch watch;
+  stepper.advance(store, neighborhood, steps, moment());
+  stepping += watch.seconds();
+  progress.steps += steps;
+  progress.particle_steps += steps * (progress.count - progress.moving_from);
 }
 
 double Bed::time() const {
-  return static_cast<double>(steps - relaxation_steps) * scene.settling.time_step +
-         static_cast<double>(relaxation_steps) * scene.time_step;
+  return static_cast<double>(progress.steps - progress.relaxation_steps) * scene.settling.time_step +
+         static_cast<double>(progress.relaxation_steps) * scene.time_step;
 }
 
-dynamics::Moment Bed::moment() const { return {std::ssize(first_ids), steps, time()}; }
+dynamics::Moment Bed::moment() const { return {std::ssize(progress.first_ids), progress.steps, time()}; }
 
 double Bed::top() const {
   return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
@@ -58,13 +67,12 @@ void Bed::balance() {
   neighborhood.rebuild(store);
 }
 
-std::int64_t Bed::particle_steps() const { return earlier_particle_steps + comm.sum(stepper.work().particle_steps); }
-
 std::vector<std::int32_t> Bed::layers() const {
   std::vector<std::int32_t> layer;
   layer.reserve(static_cast<std::size_t>(store.owned()));
   for (const GlobalId id : store.ids().first(static_cast<std::size_t>(store.owned()))) {
-    layer.push_back(static_cast<std::int32_t>(std::ranges::upper_bound(first_ids, id) - first_ids.begin()) - 1);
+    layer.push_back(
+        static_cast<std::int32_t>(std::ranges::upper_bound(progress.first_ids, id) - progress.first_ids.begin()) - 1);
   }
   return layer;
 }

@@ -6,6 +6,7 @@
 #include "comm/comm.hpp"
 #include "dynamics/stepper.hpp"
 #include "neighbor/neighborhood.hpp"
+#include "pack/progress.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
 #include "scene/scene.hpp"
@@ -22,19 +23,14 @@ struct Bed {
   particles::Store store;
   neighbor::Neighborhood neighborhood;
   dynamics::Stepper stepper;
-  std::vector<GlobalId> first_ids;  ///< of each layer
-  GlobalId moving_from = 0;         ///< particles with smaller ids are frozen: in neighborhood.frozen(), not in store
-  GlobalId count = 0;               ///< particles on all ranks
-  /// [J] kinetic and potential, as the moving particles were given it: at insertion, less what the frozen took away
-  double energy_given = 0.0;
-  std::int64_t steps = 0;
-  std::int64_t relaxation_steps = 0;        ///< of them, in final relaxations
-  std::int64_t earlier_particle_steps = 0;  ///< on all ranks, before a restart
-  double stepping = 0.0, inserting = 0.0;   ///< [s] wall time of this rank, since the start or restart
+  pack::Progress progress;                 ///< frozen particles are in neighborhood.frozen(), not in store
+  double stepping = 0.0, inserting = 0.0;  ///< [s] wall time of this rank, since the start or restart
 
-  [[nodiscard]] double time() const;                  ///< [s] simulated
-  [[nodiscard]] dynamics::Moment moment() const;      ///< now, for messages
-  [[nodiscard]] std::int64_t particle_steps() const;  ///< since the beginning, on all ranks. Collective
+  [[nodiscard]] double time() const;              ///< [s] simulated
+  [[nodiscard]] dynamics::Moment moment() const;  ///< now, for messages
+
+  /// Collective. So many steps of the stage that the stepper uses; see there for errors.
+  void advance(std::int64_t steps);
 
   /// Collective. Throws Error(numerical_failure) if any moving particle is as none may be (dynamics::report()).
   void check() { stepper.check(store, neighborhood, moment()); }

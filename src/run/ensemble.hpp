@@ -13,7 +13,7 @@ namespace packmpi::run {
 /// One pack of an ensemble.
 struct Member {
   int set, pack;       ///< from 1
-  std::uint64_t seed;  ///< the scene's plus the number of members before this one
+  std::uint64_t seed;  ///< the scene's + 10000 (set - 1) + pack - 1: the same when the ensemble grows
   std::string name;    ///< NAME_set_pack: its files are those of a run of its own
 };
 
@@ -24,8 +24,10 @@ struct Member {
 [[nodiscard]] input::Input member_input(const input::Input& in, const Member& member);
 
 /// Collective. Makes all packs, groups of ranks side by side, each pack with the bits it has when run alone; then
-/// NAME.ensemble.csv, .json and .md. With --restart auto finished packs stay and stopped ones go on. A pack that fails
-/// does not stop the others. Returns the exit code: 75 if the run was stopped, else the worst of the packs'.
+/// NAME.ensemble.csv, .json and .md, once all are made. With --restart auto finished packs stay, with their exit codes,
+/// if they are what they should be (finished_run(), whose errors are thrown), and stopped ones go on. A pack that fails
+/// does not stop the others. STOP, signals, --max-hours and --max-steps (steps of a group of ranks, pack after pack)
+/// hold for the whole. Returns the worst of the packs' exit codes; throws Error(stopped_early) if the run was stopped.
 [[nodiscard]] int make_ensemble(const comm::Comm& world, const input::Input& in, const Options& options);
 
 }  // namespace packmpi::run

@@ -28,11 +28,11 @@ void remove_if_there(const std::string& path) {
 
 void check_free(const Files& files, const Options& options) {
   const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, words); };
-  if (there(files.stop)) refuse(files.stop + " exists and would end the run at once; remove it");
+  if (there(files.stop) && !options.member) refuse(files.stop + " exists and would end the run at once; remove it");
   if (options.force) return;
   const bool unfinished = there(files.slots[0]) || there(files.slots[1]);
   if (!options.restart.empty()) {
-    if (options.restart == "auto" && !unfinished && there(files.pack) && there(files.summary)) {
+    if (!unfinished && there(files.pack) && there(files.summary)) {
       refuse(files.pack + " exists and there is no checkpoint: the run is finished; use --force to make it anew");
     }
     return;
@@ -68,27 +68,44 @@ double expected_particles(const scene::Scene& scene) {
   return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;
 }
 
-Files claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
-  const std::string stem = (std::filesystem::path(options.folder) / scene.in.name).string();
-  Files files{.pack = stem + ".hdf",
-              .summary = stem + ".json",
-              .log = stem + ".log",
-              .steps = stem + ".steps.csv",
-              .slots = {stem + ".ckpt.A.hdf", stem + ".ckpt.B.hdf"},
-              .manifest = stem + ".ckpt.json",
-              .stop = (std::filesystem::path(options.folder) / "STOP").string()};
+Files files_of(const std::string& name, const Options& options) {
+  const std::string stem = (std::filesystem::path(options.folder) / name).string();
+  return {.pack = stem + ".hdf",
+          .summary = stem + ".json",
+          .log = stem + ".log",
+          .steps = stem + ".steps.csv",
+          .analysis = stem + ".analysis.json",
+          .slots = {stem + ".ckpt.A.hdf", stem + ".ckpt.B.hdf"},
+          .manifest = stem + ".ckpt.json",
+          .stop = (std::filesystem::path(options.folder) / "STOP").string(),
+          .lock = stem + ".lock"};
+}
+
+disk::Lock take_lock(const std::string& path) {
+  disk::Lock lock(path);
+  if (!lock.held()) log::warn(path + ": this file system has no locks; see to it that no second run writes here");
+  return lock;
+}
+
+Claim claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  Claim claim{.files = files_of(scene.in.name, options), .lock = {}};
+  const Files& files = claim.files;
   comm::agree_on(comm, [&] {
-    if (comm.rank() == 0) check_free(files, options);
+    if (comm.rank() != 0) return;
+    disk::refuse_if_locked(files.lock);  // before words about files that a run at work has there
+    check_free(files, options);
   });
   disk::check_writable(comm, options.folder, static_cast<std::int64_t>(bytes_a_particle * expected_particles(scene)));
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) {
+      claim.lock = take_lock(files.lock);
+      check_free(files, options);                               // another run may have come and gone since
       if (options.restart.empty()) remove_if_there(files.log);  // --force: a new log, not a longer one
       if (options.restart.empty()) remove_checkpoints(files);
     }
     log::start(comm.rank(), files.log, options.verbosity, options.log_format);
   });
-  return files;
+  return claim;
 }
 
 }  // namespace packmpi::run

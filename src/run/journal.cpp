@@ -21,14 +21,13 @@ double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
 
 }  // namespace
 
-Journal::Journal(const Bed& bed, const std::string& steps_path, bool quiet, bool restarted,
-                 const std::vector<report::LayerRow>& layers)
+Journal::Journal(Bed& bed, const std::string& steps_path, bool quiet, bool restarted)
     : bed_(bed),
-      steps_(bed.comm, steps_path, restarted ? std::optional(bed.steps) : std::nullopt),
+      steps_(bed.comm, steps_path, bed.progress.series, restarted),
       terminal_(stdout_is_terminal()),
       quiet_(quiet),
-      height_(layers.empty() ? 0.0 : layers.back().height),
-      layers_done_(static_cast<int>(layers.size())),
+      height_(bed.progress.layers.empty() ? 0.0 : bed.progress.layers.back().height),
+      layers_done_(static_cast<int>(bed.progress.layers.size())),
       layers_before_(layers_done_) {}
 
 void Journal::layer_inserted(const report::LayerRow& row) {
@@ -42,26 +41,26 @@ void Journal::layer_inserted(const report::LayerRow& row) {
 }
 
 void Journal::moment(double share) {
-  const observe::Ledger now =
-      observe::ledger(bed_.comm, bed_.store, bed_.scene, bed_.stepper.law(), bed_.neighborhood, bed_.moving_from);
+  const observe::Ledger now = observe::ledger(bed_.comm, bed_.store, bed_.scene, bed_.stepper.law(), bed_.neighborhood,
+                                              bed_.progress.moving_from);
   const double energy = now.kinetic_energy + now.potential_energy + now.elastic_energy;
   const double top = bed_.top();
   const double force = bed_.comm.max(bed_.stepper.last().max_force);
-  steps_.append({.layer = static_cast<std::int32_t>(bed_.first_ids.size()) - 1,
-                 .step = bed_.steps,
+  steps_.append({.layer = static_cast<std::int32_t>(bed_.progress.first_ids.size()) - 1,
+                 .step = bed_.progress.steps,
                  .time = bed_.time(),
-                 .particles = bed_.count,
+                 .particles = bed_.progress.count,
                  .kinetic_energy = now.kinetic_energy,
                  .max_speed = now.max_speed,
                  .top = top,
                  .mean_height = now.mean_height,
                  .max_force = force,
                  .rebuilds = bed_.neighborhood.rebuilds(),
-                 .moving = bed_.count - bed_.moving_from,
+                 .moving = bed_.progress.count - bed_.progress.moving_from,
                  .rotational_energy = now.rotational_energy,
                  .potential_energy = now.potential_energy,
                  .elastic_energy = now.elastic_energy,
-                 .dissipated = bed_.energy_given - energy,
+                 .dissipated = bed_.progress.energy_given - energy,
                  .momentum = now.momentum});
   if (bed_.comm.rank() == 0 && !quiet_) progress(share, now.kinetic_energy, top);
 }
@@ -99,20 +98,20 @@ void Journal::progress(double share, double kinetic_energy, double top) {
       static_cast<double>(bed_.stepper.work().particle_steps) * bed_.comm.size();  // about: all ranks alike
   const double left = seconds_left(share);
   log::event_for_programs("progress", {{"phase", std::string(relaxing_ ? "relaxation" : "layer")},
-                                       {"layer", std::ssize(bed_.first_ids)},
+                                       {"layer", std::ssize(bed_.progress.first_ids)},
                                        {"share", share},
                                        {"time", bed_.time()},
-                                       {"particles", bed_.count},
-                                       {"moving", bed_.count - bed_.moving_from},
+                                       {"particles", bed_.progress.count},
+                                       {"moving", bed_.progress.count - bed_.progress.moving_from},
                                        {"top", top},
                                        {"kinetic_energy", kinetic_energy},
                                        {"particle_steps_per_second", steps / now},
                                        {"seconds_left", left}});
   // Under 80 columns: a longer line would wrap, and a wrapped line cannot be rewritten.
-  const std::string line =
-      fmt::format("{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {} left",
-                  relaxing_ ? "relaxation" : "layer", bed_.first_ids.size(), 100.0 * share,
-                  bed_.count - bed_.moving_from, top, kinetic_energy, steps / now * 1e-6, text::duration(left));
+  const std::string line = fmt::format(
+      "{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {} left",
+      relaxing_ ? "relaxation" : "layer", bed_.progress.first_ids.size(), 100.0 * share,
+      bed_.progress.count - bed_.progress.moving_from, top, kinetic_energy, steps / now * 1e-6, text::duration(left));
   if (terminal_) {
     print(fmt::format("\r{}\033[K", line));
   } else {
@@ -145,11 +144,13 @@ void Journal::layer_settled(const report::LayerRow& row) {
 void Journal::relaxation_started() { relaxing_ = true; }
 
 void Journal::relaxed(double height) {
-  tell(
-      "relaxed",
-      fmt::format("relaxation: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", bed_.count,
-                  bed_.scene.relaxation, height_, height),
-      {{"particles", bed_.count}, {"duration", bed_.scene.relaxation}, {"height_before", height_}, {"height", height}});
+  tell("relaxed",
+       fmt::format("relaxation: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", bed_.progress.count,
+                   bed_.scene.relaxation, height_, height),
+       {{"particles", bed_.progress.count},
+        {"duration", bed_.scene.relaxation},
+        {"height_before", height_},
+        {"height", height}});
   height_ = height;
   relaxing_ = false;
 }
@@ -160,6 +161,6 @@ void Journal::tell(const std::string& event, const std::string& line, std::initi
   log::event(event, line, fields);
 }
 
-void Journal::finish() { steps_.close(); }
+std::int64_t Journal::finish() { return steps_.close(); }
 
 }  // namespace packmpi::run

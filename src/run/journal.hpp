@@ -3,12 +3,11 @@
 #include <cstdint>
 #include <initializer_list>
 #include <string>
-#include <vector>
 
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "report/record.hpp"
-#include "report/report.hpp"
+#include "report/step_log.hpp"
 #include "run/bed.hpp"
 
 namespace packmpi::run {
@@ -16,10 +15,8 @@ namespace packmpi::run {
 /// Progress line with an estimate of the time left (a terminal: one line, rewritten; else a line now and then).
 class Journal {
  public:
-  /// Collective. Opens the step log at `steps_path`; after a restart, which has settled `layers` before, it goes on
-  /// from the step the bed is at.
-  Journal(const Bed& bed, const std::string& steps_path, bool quiet, bool restarted,
-          const std::vector<report::LayerRow>& layers);
+  /// Collective. Opens the time series at `steps_path`; after a restart, that of bed.progress.
+  Journal(Bed& bed, const std::string& steps_path, bool quiet, bool restarted);
 
   void layer_inserted(const report::LayerRow& row);  ///< local
   /// Collective. A row of the step log, and progress; `share` is the part of the layer's (or the final stage's)
@@ -28,8 +25,10 @@ class Journal {
   void layer_settled(const report::LayerRow& row);  ///< local
   void relaxation_started();                        ///< local; what follows is the final stage
   void relaxed(double height);                      ///< local; height [m] after the final stage
-  /// Collective. Closes the files.
-  void finish();
+  /// Local. What was told so far is on the disk to stay: before a checkpoint that counts on it.
+  void sync() { steps_.sync(); }
+  /// Collective. Closes the time series; how many of its rows are in the file.
+  [[nodiscard]] std::int64_t finish();
 
  private:
   void progress(double share, double kinetic_energy, double top);

@@ -41,22 +41,21 @@ const char* phase_name(pack::Phase phase) {
 
 }  // namespace
 
-Keeper::Keeper(Bed& bed, const Stand& stand, const report::RunRecord& record, const Files& files,
-               const Options& options, const Origin& origin)
+Keeper::Keeper(Bed& bed, Journal& journal, const Files& files, const Options& options, const Origin& origin)
     : bed_(bed),
-      stand_(stand),
-      record_(record),
+      journal_(journal),
       files_(files),
       rhythm_(input::rhythm_of(bed.scene.in.checkpoint.every).value_or(input::Rhythm{})),
       limit_(std::min(options.max_hours > 0.0 ? options.max_hours * 3600.0 : never, slurm_seconds())),
-      last_step_(bed.steps),
-      step_limit_(options.max_steps > 0 ? bed.steps + options.max_steps : std::numeric_limits<std::int64_t>::max()),
+      last_step_(bed.progress.steps),
+      step_limit_(options.max_steps > 0 ? bed.progress.steps + options.max_steps
+                                        : std::numeric_limits<std::int64_t>::max()),
       serial_(origin.serial),
       slot_(origin.next_slot) {}
 
 std::int64_t Keeper::steps_to_look() const {
-  std::int64_t steps = std::min(look_every, step_limit_ - bed_.steps);
-  if (rhythm_.steps > 0) steps = std::min(steps, last_step_ + rhythm_.steps - bed_.steps);
+  std::int64_t steps = std::min(look_every, step_limit_ - bed_.progress.steps);
+  if (rhythm_.steps > 0) steps = std::min(steps, last_step_ + rhythm_.steps - bed_.progress.steps);
   return std::max<std::int64_t>(steps, 1);
 }
 
@@ -64,7 +63,9 @@ bool Keeper::due_by_clock(double least) const {
   return rhythm_.seconds > 0.0 && watch_.seconds() - written_at_ >= std::min(rhythm_.seconds, least);
 }
 
-void Keeper::look() { look(due_by_clock(never) || (rhythm_.steps > 0 && bed_.steps - last_step_ >= rhythm_.steps)); }
+void Keeper::look() {
+  look(due_by_clock(never) || (rhythm_.steps > 0 && bed_.progress.steps - last_step_ >= rhythm_.steps));
+}
 
 void Keeper::layer_ended() { look(due_by_clock(layer_interval) || rhythm_.steps > 0); }
 
@@ -107,7 +108,7 @@ void Keeper::look(bool due) {
 }
 
 Keeper::Reason Keeper::reason_to_stop() {
-  if (bed_.steps >= step_limit_) return Reason::step_limit;
+  if (bed_.progress.steps >= step_limit_) return Reason::step_limit;
   if (out_of_time()) return Reason::time_limit;
   return stop_file_there() ? Reason::stop_file : Reason::none;
 }
@@ -125,63 +126,48 @@ bool Keeper::stop_file_there() {
 
 void Keeper::write() {
   const Stopwatch watch;
+  journal_.sync();
   const pack::RunState state{.serial = serial_,
                              .effective_input = bed_.scene.in.effective,
                              .version = std::string(version()),
                              .git = std::string(git_id()),
                              .dimension = bed_.scene.box.dimension,
                              .rotation = bed_.scene.features.rotation,
-                             .first_ids = bed_.first_ids,
-                             .count = bed_.count,
-                             .energy_given = bed_.energy_given,
-                             .steps = bed_.steps,
-                             .particle_steps = bed_.particle_steps(),
-                             .layers = record_.layers,
-                             .compaction_rate = record_.compaction_rate,
-                             .moving_from = bed_.moving_from,
-                             .height = record_.height,
-                             .relaxations = record_.relaxations,
-                             .relaxation_steps = bed_.relaxation_steps,
-                             .height_before_relaxation = record_.height_before_relaxation,
-                             .phase = stand_.phase,
-                             .row = stand_.row,
-                             .done = stand_.course.done,
-                             .phi_before = stand_.course.phi_before,
-                             .mean_height = stand_.course.mean_height,
-                             .calm_since = stand_.course.calm_since,
-                             .phi_calm = stand_.course.phi_calm};
+                             .progress = bed_.progress};
   const std::array<const particles::Store*, 2> stores{&bed_.store, &bed_.neighborhood.frozen()};
   pack::write_checkpoint(bed_.comm, files_.slots[slot_], stores, state);
-  disk::write_text(
-      bed_.comm, files_.manifest,
-      fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 2, \"newest\": \"{}\", "
-                  "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",
-                  "AB"[slot_], serial_, bed_.first_ids.size(), phase_name(stand_.phase), bed_.steps, bed_.count));
+  disk::write_text(bed_.comm, files_.manifest,
+                   fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 2, \"newest\": \"{}\", "
+                               "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",
+                               "AB"[slot_], serial_, bed_.progress.first_ids.size(),
+                               phase_name(bed_.progress.now.phase), bed_.progress.steps, bed_.progress.count));
   const double took = bed_.comm.max(watch.seconds());
-  log::debug(fmt::format("checkpoint {} at step {}: {}", files_.slots[slot_], bed_.steps, text::duration(took)));
+  log::debug(
+      fmt::format("checkpoint {} at step {}: {}", files_.slots[slot_], bed_.progress.steps, text::duration(took)));
   ++serial_;
   slot_ = 1 - slot_;
   longest_write_ = std::max(longest_write_, took);
   written_at_ = looked_at_ = watch_.seconds();
-  last_step_ = bed_.steps;
+  last_step_ = bed_.progress.steps;
   kept_ = true;
 }
 
 void Keeper::keep_going_without(const std::string& words) {
   kept_ = false;
-  log::warn(fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", bed_.steps, words));
+  log::warn(
+      fmt::format("no checkpoint at step {}; the last one stays, the run goes on: {}", bed_.progress.steps, words));
   written_at_ = looked_at_ = watch_.seconds();
-  last_step_ = bed_.steps;
+  last_step_ = bed_.progress.steps;
 }
 
 void Keeper::stop(Reason reason) {
-  if (!kept_ || last_step_ != bed_.steps) write();
+  if (!kept_ || last_step_ != bed_.progress.steps) write();
   constexpr std::array<const char*, 5> words{"", "a signal said so", "the STOP file is there", "the time limit is near",
                                              "--max-steps are done"};
-  comm::fail_together(
-      bed_.comm, ExitCode::stopped_early,
-      fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on", bed_.steps,
-                  bed_.first_ids.size(), files_.slots[1 - slot_], words.at(static_cast<std::size_t>(reason))));
+  comm::fail_together(bed_.comm, ExitCode::stopped_early,
+                      fmt::format("stopped at step {} in layer {}, with a checkpoint ({}): {}; --restart auto goes on",
+                                  bed_.progress.steps, bed_.progress.first_ids.size(), files_.slots[1 - slot_],
+                                  words.at(static_cast<std::size_t>(reason))));
 }
 
 void Keeper::finished() {

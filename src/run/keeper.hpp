@@ -8,8 +8,8 @@
 #include "base/types.hpp"
 #include "input/rhythm.hpp"
 #include "run/bed.hpp"
-#include "run/course.hpp"
 #include "run/files.hpp"
+#include "run/journal.hpp"
 #include "run/options.hpp"
 #include "run/restart.hpp"
 
@@ -19,8 +19,7 @@ namespace packmpi::run {
 /// it is given must outlive it.
 class Keeper {
  public:
-  Keeper(Bed& bed, const Stand& stand, const report::RunRecord& record, const Files& files, const Options& options,
-         const Origin& origin);
+  Keeper(Bed& bed, Journal& journal, const Files& files, const Options& options, const Origin& origin);
 
   /// Steps to make until the next look(); the same on all ranks, at least 1.
   [[nodiscard]] std::int64_t steps_to_look() const;
@@ -54,8 +53,7 @@ class Keeper {
   [[noreturn]] void stop(Reason reason);
 
   Bed& bed_;
-  const Stand& stand_;
-  const report::RunRecord& record_;
+  Journal& journal_;
   const Files& files_;
   input::Rhythm rhythm_;
   double limit_ = 0.0;      // [s] since the start; rank 0; infinite: none

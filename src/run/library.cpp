@@ -36,7 +36,7 @@ PackResult make(const comm::Comm& comm, const run::Options& options) {
   comm::petsc_options(in.petsc.options);
   const report::RunRecord record = run::make_pack(comm, scene::build(in), options);
   PackResult result;
-  result.code = static_cast<int>(run::targets_met(record) ? ExitCode::done : ExitCode::target_missed);
+  result.code = static_cast<int>(record.targets_met ? ExitCode::done : ExitCode::target_missed);
   result.file = (std::filesystem::path(options.folder) / (in.name + ".hdf")).string();
   result.particles = record.particles;
   result.height = record.height;

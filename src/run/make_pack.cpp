@@ -16,7 +16,6 @@
 #include "run/analyze.hpp"
 #include "run/bed.hpp"
 #include "run/counters.hpp"
-#include "run/course.hpp"
 #include "run/files.hpp"
 #include "run/journal.hpp"
 #include "run/keeper.hpp"
@@ -29,42 +28,46 @@
 namespace packmpi::run {
 namespace {
 
-void insert_layer(Bed& bed, Keeper& keeper, report::LayerRow& row) {
+void insert_layer(Bed& bed, Keeper& keeper) {
   const scene::Scene& scene = bed.scene;
+  pack::Progress& at = bed.progress;
   bed.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.first_ids.size()),
+  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(at.first_ids.size()),
                                 .bottom = bed.top(),
                                 .thickness = scene.in.layers.thickness,
-                                .first_id = bed.count};
+                                .first_id = at.count};
   const LocalIndex before = bed.store.owned();
   const auto look = [&] { keeper.look_while_inserting(before); };
   const Stopwatch watch;
   const rsa::Insertion got = rsa::insert(bed.comm, scene, bed.ownership, region, bed.store, look);
   bed.inserting += watch.seconds();
-  bed.first_ids.push_back(bed.count);
-  bed.energy_given += observe::energy_of(bed.comm, bed.store, scene, bed.count, bed.count + got.inserted);
-  bed.count += got.inserted;
+  at.first_ids.push_back(at.count);
+  at.energy_given += observe::energy_of(bed.comm, bed.store, scene, at.count, at.count + got.inserted);
+  at.count += got.inserted;
+  report::LayerRow& row = at.now.row;
   row.inserted = got.inserted;
   row.attempts = got.trials;
-  row.total = bed.count;
+  row.total = at.count;
   row.target_fraction = scene.in.layers.fraction;
   row.achieved_fraction = got.solid_volume / (scene.box.floor_area() * region.thickness);
   row.region_bottom = region.bottom;
 }
 
-void settle_layer(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  const Settled settled = settle(bed, journal, keeper, Part::layer, stand.course);
-  record.compaction_rate = settled.compaction_rate;
-  stand.row.steps = settled.steps;
-  stand.row.duration = settled.seconds;
-  stand.row.stop_reason = settled.early ? "settled" : "duration";
+void settle_layer(Bed& bed, Journal& journal, Keeper& keeper) {
+  const Settled settled = settle(bed, journal, keeper, Part::layer);
+  bed.progress.compaction_rate = settled.compaction_rate;
+  report::LayerRow& row = bed.progress.now.row;
+  row.steps = settled.steps;
+  row.duration = settled.seconds;
+  row.stop_reason = settled.early ? "settled" : "duration";
 }
 
-void measure_layer(const Bed& bed, report::LayerRow& row) {
+void measure_layer(Bed& bed) {
   const scene::Scene& scene = bed.scene;
   const observe::Contacts contacts = observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(),
-                                                       bed.neighborhood.walls(), bed.moving_from);
+                                                       bed.neighborhood.walls(), bed.progress.moving_from);
   const observe::Motion motion = observe::motion(bed.comm, bed.store, scene);
+  report::LayerRow& row = bed.progress.now.row;
   row.height = bed.height();
   row.top = bed.top();
   row.max_overlap = contacts.max_overlap;
@@ -74,33 +77,35 @@ void measure_layer(const Bed& bed, report::LayerRow& row) {
 }
 
 // The final stage: every particle moves for scene.relaxation. The height is that after it.
-void relax(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  if (!(bed.scene.relaxation > 0.0) && bed.moving_from == 0) return;
+void relax(Bed& bed, Journal& journal, Keeper& keeper) {
+  pack::Progress& at = bed.progress;
+  if (!(bed.scene.relaxation > 0.0) && at.moving_from == 0) return;
   bed.release();
   bed.balance();
   journal.relaxation_started();
-  record.height_before_relaxation = record.height;
+  at.height_before_relaxation = at.height;
   if (bed.scene.relaxation > 0.0) {
-    record.compaction_rate = settle(bed, journal, keeper, Part::relaxation, stand.course).compaction_rate;
+    at.compaction_rate = settle(bed, journal, keeper, Part::relaxation).compaction_rate;
   }
-  ++record.relaxations;
-  record.height = bed.height();
-  journal.relaxed(record.height);
+  ++at.relaxations;
+  at.height = bed.height();
+  journal.relaxed(at.height);
 }
 
-void insert_and_settle(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
-  if (stand.phase == pack::Phase::insertion) {
-    insert_layer(bed, keeper, stand.row);
+void insert_and_settle(Bed& bed, Journal& journal, Keeper& keeper) {
+  pack::Progress& at = bed.progress;
+  if (at.now.phase == pack::Phase::insertion) {
+    insert_layer(bed, keeper);
     bed.freeze_older();
     bed.balance();
-    journal.layer_inserted(stand.row);
-    stand.phase = pack::Phase::settling;
+    journal.layer_inserted(at.now.row);
+    at.now.phase = pack::Phase::settling;
   }
-  settle_layer(bed, journal, keeper, stand, record);
-  measure_layer(bed, stand.row);
-  journal.layer_settled(stand.row);
-  record.height = stand.row.height;
-  record.layers.push_back(stand.row);
+  settle_layer(bed, journal, keeper);
+  measure_layer(bed);
+  journal.layer_settled(at.now.row);
+  at.height = at.now.row.height;
+  at.layers.push_back(at.now.row);
 }
 
 // What a bed sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
@@ -112,33 +117,31 @@ double sinks_by(const input::Input& in) {
 
 // The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
 // too few costs a second final stage, in which all that lies there creeps again.
-double final_height(const scene::Scene& scene, const report::RunRecord& record) {
-  if (!(scene.relaxation > 0.0) || record.layers.empty()) return record.height;
-  const bool over = record.relaxations > 0 && record.height_before_relaxation == record.layers.back().height;
-  if (over) return record.height;
-  return record.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+double final_height(const scene::Scene& scene, const pack::Progress& at) {
+  if (!(scene.relaxation > 0.0) || at.layers.empty()) return at.height;
+  const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
+  if (over) return at.height;
+  return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
-// The loop of Algorithm 1, and the final stage; more layers if the bed sank in it. From where `stand` says.
+// The loop of Algorithm 1, and the final stage; more layers if the bed sank in it. From where bed.progress says.
 // Bounded.
-void fill(Bed& bed, Journal& journal, Keeper& keeper, Stand& stand, report::RunRecord& record) {
+void fill(Bed& bed, Journal& journal, Keeper& keeper) {
+  pack::Progress& at = bed.progress;
   const std::int64_t most = scene::most_layers(bed.scene.in);
   const auto more = [&] {
-    return final_height(bed.scene, record) < record.target_height &&
-           static_cast<std::int64_t>(record.layers.size()) < most;
+    return final_height(bed.scene, at) < bed.scene.box.height() && std::ssize(at.layers) < most;
   };
-  while (stand.phase != pack::Phase::insertion || more()) {
-    if (stand.phase == pack::Phase::relaxation) {
-      relax(bed, journal, keeper, stand, record);
-      stand = {};
+  while (at.now.phase != pack::Phase::insertion || more()) {
+    if (at.now.phase == pack::Phase::relaxation) {
+      relax(bed, journal, keeper);
+      at.now = {};
     } else {
-      insert_and_settle(bed, journal, keeper, stand, record);
-      stand = {.phase = more() ? pack::Phase::insertion : pack::Phase::relaxation};
+      insert_and_settle(bed, journal, keeper);
+      at.now = {.phase = more() ? pack::Phase::insertion : pack::Phase::relaxation};
     }
     keeper.layer_ended();
   }
-  record.reached = record.height >= record.target_height;
-  record.stop_reason = record.reached ? "height" : "layers.maximum";
 }
 
 void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record) {
@@ -160,6 +163,9 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
                               .contact_rows = bed.scene.in.output.contacts ? &rows : nullptr,
                               .maps = &maps};
   pack::write_pack(bed.comm, files.pack, parts, record);
+  comm::agree_on(bed.comm, [&] {
+    if (bed.comm.rank() == 0) record.pack_seal = pack::seal_of(files.pack);
+  });
   count(bed, contacts.pairs_here, record);
   disk::write_text(bed.comm, files.summary, report::to_json(record));
 }
@@ -187,18 +193,21 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   Bed bed(comm, scene);
+  const Origin origin = resume(files, options, bed);
+  const pack::Progress before = bed.progress;
+  Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted);
+  Keeper keeper(bed, journal, files, options, origin);
+  fill(bed, journal, keeper);
   report::RunRecord record = targets_of(comm, scene);
-  Stand stand;
-  const Origin origin = resume(files, options, bed, stand, record);
-  Keeper keeper(bed, stand, record, files, options, origin);
-  Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted, record.layers);
-  fill(bed, journal, keeper, stand, record);
-  journal.finish();
+  record.series_rows_in_file = journal.finish();
+  record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
+  record.targets_met = targets_met(record);
   tell_sizes(scene, record.sizes);
   record.wall_seconds = comm.max(watch.seconds());
+  record.steps_here = record.steps - before.steps;
   record.particle_steps_per_second =
-      static_cast<double>(record.particle_steps - bed.earlier_particle_steps) / record.wall_seconds;
+      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
   write_outputs(bed, files, record);
   keeper.finished();
   return record;
@@ -207,9 +216,14 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
 }  // namespace
 
 report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
-  const Files files = claim_files(comm, scene, options);
-  report::RunRecord record = make(comm, scene, options, files);
-  if (scene.in.output.analysis) (void)analyze(comm, files.pack);
+  const Claim claim = claim_files(comm, scene, options);
+  report::RunRecord record = make(comm, scene, options, claim.files);
+  if (scene.in.output.analysis) (void)analyze(comm, claim.files.pack);
+  if (record.series_rows_lost > 0) {
+    comm::fail_together(comm, ExitCode::io_failure,
+                        fmt::format("{} is written and whole, but {} rows of {} could not be: a warning above says why",
+                                    claim.files.pack, record.series_rows_lost, claim.files.steps));
+  }
   return record;
 }
 

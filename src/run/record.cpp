@@ -33,7 +33,7 @@ double target_sd(const scene::Scene& scene) {
 
 void audit(const Bed& bed, const observe::Contacts& contacts, report::RunRecord& record) {
   const observe::Validity valid = observe::validity(bed.comm, bed.store, bed.scene);
-  record.audit.expected = bed.count;
+  record.audit.expected = bed.progress.count;
   record.audit.found = valid.found;
   record.audit.non_finite = valid.non_finite;
   record.audit.outside = valid.outside;
@@ -76,7 +76,16 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   const observe::Density density = observe::density(comm, bed.store, scene);
   const observe::Motion motion = observe::motion(comm, bed.store, scene);
   const observe::SizeStatistics sizes = observe::sizes(comm, bed.store);
-  record.particles = bed.count;
+  const pack::Progress& at = bed.progress;
+  record.particles = at.count;
+  record.height = at.height;
+  record.reached = at.height >= record.target_height;
+  record.stop_reason = record.reached ? "height" : "layers.maximum";
+  record.compaction_rate = at.compaction_rate;
+  record.layers = at.layers;
+  record.relaxations = at.relaxations;
+  record.height_before_relaxation = at.height_before_relaxation;
+  record.series_rows = at.series.rows;
   record.top = observe::top(comm, bed.store, scene);
   record.phi = density.phi;
   record.phi_bulk = density.phi_bulk;
@@ -91,10 +100,10 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.min_radius = sizes.min;
   record.max_radius = sizes.max;
   record.sizes = observe::size_match(comm, bed.store, scene.sizes.curve());
-  record.steps = bed.steps;
-  record.relaxation_steps = bed.relaxation_steps;
+  record.steps = at.steps;
+  record.relaxation_steps = at.relaxation_steps;
   record.duration = bed.time();
-  record.particle_steps = bed.particle_steps();
+  record.particle_steps = at.particle_steps;
   record.bytes_per_particle = bed.bytes_per_particle();
   audit(bed, contacts, record);
 }

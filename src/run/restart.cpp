@@ -7,31 +7,19 @@
 #include <vector>
 
 #include "base/log.hpp"
-#include "input/read.hpp"
+#include "pack/checkpoint.hpp"
 #include "packmpi/version.hpp"
 #include "run/scene_change.hpp"
 
 namespace packmpi::run {
 namespace {
 
-bool is_from_this_program(const pack::RunState& state) { return state.version == version() && state.git == git_id(); }
-
-/// The checkpoint's scene as it is read now: keys that are new since then have their defaults. Local.
-std::string scene_now(const pack::RunState& state, const std::string& path) {
-  if (is_from_this_program(state)) return state.effective_input;
-  try {
-    return input::parse(state.effective_input, "the scene in it", {}).effective;
-  } catch (const Error& error) {
-    throw Error(ExitCode::bad_checkpoint,
-                fmt::format("checkpoint {}: {}; go on with the packmpi that wrote it, or begin anew with --force and "
-                            "without --restart",
-                            path, error.what()));
-  }
-}
+Writer writer_of(const pack::RunState& state) { return {state.effective_input, state.version, state.git}; }
 
 /// Throws on a scene that is not the checkpoint's. Local.
 void check_scene(const pack::RunState& state, const scene::Scene& scene, const std::string& path) {
-  const std::string changes = forbidden_changes(scene_now(state, path), scene.in.effective);
+  const std::string changes =
+      changes_since(writer_of(state), scene.in.effective, RunIs::unfinished, "checkpoint " + path);
   if (changes.empty()) return;
   throw Error(ExitCode::bad_checkpoint,
               fmt::format("checkpoint {} is of another scene: {}; undo the change, or begin anew with --force and "
@@ -78,9 +66,10 @@ std::vector<std::string> choices(const comm::Comm& comm, const Files& files, con
   order = comm.broadcast(0, order);
   passed_over = comm.broadcast(0, passed_over);
   if (order.empty() && comm.max(std::int64_t{any ? 1 : 0}) > 0) {
-    throw Error(ExitCode::bad_checkpoint, passed_over +
-                                              "; nothing else to go on from: begin anew with --force and "
-                                              "without --restart");
+    comm::fail_together(comm, ExitCode::bad_checkpoint,
+                        passed_over +
+                            "; nothing else to go on from: begin anew with --force and "
+                            "without --restart");
   }
   std::vector<std::string> paths;
   for (const char digit : order) paths.push_back(files.slots[static_cast<std::size_t>(digit - '0')]);
@@ -100,31 +89,13 @@ std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>
       bed.store = particles::Store(bed.store.layout());
     }
   }
-  throw Error(ExitCode::bad_checkpoint, passed_over);
+  comm::fail_together(bed.comm, ExitCode::bad_checkpoint, passed_over);
 }
 
-void put_back(const pack::RunState& state, Bed& bed, Stand& stand, report::RunRecord& record) {
-  bed.first_ids = state.first_ids;
-  bed.count = state.count;
-  bed.energy_given = state.energy_given;
-  bed.steps = state.steps;
-  bed.relaxation_steps = state.relaxation_steps;
-  bed.earlier_particle_steps = state.particle_steps;
-  stand = {.phase = state.phase,
-           .row = state.row,
-           .course = {.done = state.done,
-                      .phi_before = state.phi_before,
-                      .mean_height = state.mean_height,
-                      .calm_since = state.calm_since,
-                      .phi_calm = state.phi_calm}};
-  record.layers = state.layers;
-  record.compaction_rate = state.compaction_rate;
-  record.height = state.height;
-  record.relaxations = state.relaxations;
-  record.height_before_relaxation = state.height_before_relaxation;
+void put_back(const pack::RunState& state, Bed& bed) {
+  bed.progress = state.progress;
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
-  bed.moving_from = state.moving_from;
-  if (state.moving_from > 0) bed.neighborhood.freeze(bed.store, state.moving_from);
+  if (bed.progress.moving_from > 0) bed.neighborhood.freeze(bed.store, bed.progress.moving_from);
   bed.balance();
 }
 
@@ -147,7 +118,7 @@ std::int64_t next_serial(const Files& files, std::int64_t serial) {
 
 }  // namespace
 
-Origin resume(const Files& files, const Options& options, Bed& bed, Stand& stand, report::RunRecord& record) {
+Origin resume(const Files& files, const Options& options, Bed& bed) {
   std::string passed_over;
   if (options.restart.empty()) return {};
   const std::vector<std::string> paths = choices(bed.comm, files, options, bed.scene, passed_over);
@@ -156,13 +127,13 @@ Origin resume(const Files& files, const Options& options, Bed& bed, Stand& stand
     return {};
   }
   const auto [state, path] = read_first(paths, passed_over, bed);
-  if (!is_from_this_program(state)) {
+  if (!is_this_program(writer_of(state))) {
     log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
                           state.version, state.git, version(), git_id()));
   }
-  put_back(state, bed, stand, record);
-  log::info(fmt::format("going on from {}: layer {}, step {}, {} particles", path, state.first_ids.size(), state.steps,
-                        state.count));
+  put_back(state, bed);
+  log::info(fmt::format("going on from {}: layer {}, step {}, {} particles", path, state.progress.first_ids.size(),
+                        state.progress.steps, state.progress.count));
   const bool first = bed.comm.rank() == 0;
   return {.restarted = true,
           .serial = bed.comm.max(first ? next_serial(files, state.serial) : std::int64_t{0}),

@@ -9,6 +9,10 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/error.hpp"
+#include "input/read.hpp"
+#include "packmpi/version.hpp"
+
 namespace packmpi::run {
 namespace {
 
@@ -27,14 +31,15 @@ std::map<std::string, std::string> values_of(const std::string& effective) {
   return values;
 }
 
-bool may_change(std::string_view key) {
+bool may_change(std::string_view key, RunIs run) {
+  if (run == RunIs::finished && key == "output.contacts") return false;
   constexpr std::array<std::string_view, 4> tables{"parallel.", "checkpoint.", "output.", "petsc."};
   return std::ranges::any_of(tables, [&](auto table) { return key.starts_with(table); });
 }
 
 }  // namespace
 
-std::string forbidden_changes(const std::string& before, const std::string& now) {
+std::string forbidden_changes(const std::string& before, const std::string& now, RunIs run) {
   const auto old_values = values_of(before);
   const auto new_values = values_of(now);
   std::set<std::string> keys;
@@ -47,14 +52,28 @@ std::string forbidden_changes(const std::string& before, const std::string& now)
   // More layers after the final stage are not the layers of a run that never had it.
   const std::string window = shown(new_values, "dynamics.window"),
                     relaxation = shown(new_values, "dynamics.relaxation");
-  const bool final_stage = window != "0" || (relaxation != "\"auto\"" && relaxation != "0.0");
+  const bool fixed = run == RunIs::finished || window != "0" || (relaxation != "\"auto\"" && relaxation != "0.0");
   std::string words;
   for (const std::string& key : keys) {
     const std::string was = shown(old_values, key), is = shown(new_values, key);
-    if (was == is || may_change(key) || (key == "layers.maximum" && !final_stage)) continue;
+    if (was == is || may_change(key, run) || (key == "layers.maximum" && !fixed)) continue;
     words += fmt::format("{}{}: {} before, {} now", words.empty() ? "" : "; ", key, was, is);
   }
   return words;
+}
+
+bool is_this_program(const Writer& writer) { return writer.version == version() && writer.git == git_id(); }
+
+std::string changes_since(const Writer& writer, const std::string& now, RunIs run, const std::string& what) {
+  if (is_this_program(writer)) return forbidden_changes(writer.scene, now, run);
+  try {
+    return forbidden_changes(input::parse(writer.scene, "the scene in it", {}).effective, now, run);
+  } catch (const Error& error) {
+    throw Error(ExitCode::bad_checkpoint,
+                fmt::format("{}: {}; go on with the packmpi that wrote it, or begin anew with --force and without "
+                            "--restart",
+                            what, error.what()));
+  }
 }
 
 }  // namespace packmpi::run

@@ -78,57 +78,61 @@ struct Criterion {
   [[nodiscard]] bool met() const noexcept { return value < limit; }  // not for NaN
 };
 
-// Says it when a criterion is met for the first time in this part (again after a restart).
-void tell(const Bed& bed, const Plan& plan, const Criterion& criterion, unsigned bit, Course& course) {
-  const double time = static_cast<double>(course.done) * plan.stage.time_step;
+// Says it when a criterion is met for the first time in this part.
+void tell(Bed& bed, const Plan& plan, const Criterion& criterion, std::int64_t bit) {
+  pack::PhaseProgress& now = bed.progress.now;
+  const double time = static_cast<double>(now.done) * plan.stage.time_step;
   log::debug(fmt::format("{} {:.2e} after {:.4g} s", criterion.words, criterion.value, time));
-  if (!criterion.met() || (course.met & bit) != 0) return;
-  course.met |= bit;
-  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", bed.first_ids.size(), criterion.words,
-                        criterion.value, criterion.limit, time));
+  if (!criterion.met() || (now.told & bit) != 0) return;
+  now.told |= bit;
+  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", bed.progress.first_ids.size(),
+                        criterion.words, criterion.value, criterion.limit, time));
 }
 
 // Are all criteria met? The dear one, which costs about two steps, is looked at only if the others are.
-bool is_calm(const Bed& bed, const Plan& plan, Course& course) {
+bool is_calm(Bed& bed, const Plan& plan) {
+  pack::PhaseProgress& now = bed.progress.now;
   const input::Dynamics& limits = bed.scene.in.dynamics;
   const double g = bed.scene.in.jamming.gravity;
   const double d = 2.0 * bed.scene.sizes.mean();
   const observe::Motion motion = observe::motion(bed.comm, bed.store, bed.scene);
   const double time = static_cast<double>(plan.look_every) * plan.stage.time_step;
-  const double drift = std::abs(motion.mean_height - course.mean_height) / time / std::sqrt(g * d);
-  course.mean_height = motion.mean_height;
+  const double drift = std::abs(motion.mean_height - now.mean_height) / time / std::sqrt(g * d);
+  now.mean_height = motion.mean_height;
   const Criterion energy{"KE/(m g d)", motion.kinetic_energy / (motion.mass * g * d), limits.settled_energy};
   const Criterion sinking{"drift/sqrt(g d)", drift, limits.settled_drift};
-  tell(bed, plan, energy, 1, course);
-  tell(bed, plan, sinking, 2, course);
+  tell(bed, plan, energy, 1);
+  tell(bed, plan, sinking, 2);
   if (!energy.met() || !sinking.met()) return false;
-  const double ratio =
-      observe::unbalanced_force(bed.comm, bed.store, bed.scene, bed.stepper.law(), bed.neighborhood, bed.moving_from);
+  const double ratio = observe::unbalanced_force(bed.comm, bed.store, bed.scene, bed.stepper.law(), bed.neighborhood,
+                                                 bed.progress.moving_from);
   const Criterion balance{"unbalanced force ratio", ratio, limits.settled_force};
-  tell(bed, plan, balance, 4, course);
+  tell(bed, plan, balance, 4);
   return balance.met();
 }
 
 // Looks whether the moving particles have come to rest, and for how long. True if long enough.
-bool has_settled(const Bed& bed, const Plan& plan, Course& course) {
-  if (!is_calm(bed, plan, course)) {
-    course.calm_since = -1;
+bool has_settled(Bed& bed, const Plan& plan) {
+  pack::PhaseProgress& now = bed.progress.now;
+  if (!is_calm(bed, plan)) {
+    now.calm_since = -1;
     return false;
   }
-  if (course.calm_since < 0) {
-    course.calm_since = course.done;
-    course.phi_calm = phi_of_moving(bed);
+  if (now.calm_since < 0) {
+    now.calm_since = now.done;
+    now.phi_calm = phi_of_moving(bed);
   }
-  return static_cast<double>(course.done - course.calm_since) * plan.stage.time_step >=
+  return static_cast<double>(now.done - now.calm_since) * plan.stage.time_step >=
          bed.scene.in.dynamics.settled_hold * (1.0 - 1e-9);
 }
 
-Settled result(const Bed& bed, const Plan& plan, const Course& course, bool early) {
-  const double before = early ? course.phi_calm : course.phi_before;
-  const std::int64_t since = early ? course.calm_since : plan.rate_from;
-  const double time = static_cast<double>(course.done - since) * plan.stage.time_step;
-  return {.steps = course.done,
-          .seconds = static_cast<double>(course.done) * plan.stage.time_step,
+Settled result(const Bed& bed, const Plan& plan, bool early) {
+  const pack::PhaseProgress& now = bed.progress.now;
+  const double before = early ? now.phi_calm : now.phi_before;
+  const std::int64_t since = early ? now.calm_since : plan.rate_from;
+  const double time = static_cast<double>(now.done - since) * plan.stage.time_step;
+  return {.steps = now.done,
+          .seconds = static_cast<double>(now.done) * plan.stage.time_step,
           .compaction_rate = (phi_of_moving(bed) - before) / time,
           .early = early};
 }
@@ -147,30 +151,28 @@ std::vector<double> hardening(double soft, double hard) {
   return moduli;
 }
 
-Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part, Course& course) {
+Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part) {
+  pack::PhaseProgress& now = bed.progress.now;
   const Plan plan = plan_of(bed.scene, part);
-  if (plan.look_every > 0 && course.done == 0) {
-    course.mean_height = observe::motion(bed.comm, bed.store, bed.scene).mean_height;
+  if (plan.look_every > 0 && now.done == 0) {
+    now.mean_height = observe::motion(bed.comm, bed.store, bed.scene).mean_height;
   }
   bool early = false;
-  while (course.done < plan.steps && !early) {
-    if (course.done == plan.rate_from) course.phi_before = phi_of_moving(bed);
-    const std::int64_t next = std::min(plan.next(course.done), course.done + keeper.steps_to_look());
-    bed.stepper.use({plan.stage.time_step, plan.modulus(course.done)});
-    const Stopwatch watch;
-    bed.stepper.advance(bed.store, bed.neighborhood, next - course.done, bed.moment());
-    bed.stepping += watch.seconds();
-    bed.steps += next - course.done;
-    if (part == Part::relaxation) bed.relaxation_steps += next - course.done;
-    course.done = next;
-    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan, course);
+  while (now.done < plan.steps && !early) {
+    if (now.done == plan.rate_from) now.phi_before = phi_of_moving(bed);
+    const std::int64_t next = std::min(plan.next(now.done), now.done + keeper.steps_to_look());
+    bed.stepper.use({plan.stage.time_step, plan.modulus(now.done)});
+    bed.advance(next - now.done);
+    if (part == Part::relaxation) bed.progress.relaxation_steps += next - now.done;
+    now.done = next;
+    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan);
     if (next % plan.log_every == 0 || next == plan.steps || early) {
       journal.moment(static_cast<double>(next) / static_cast<double>(plan.steps));
     }
     if (!early) keeper.look();  // a part that is over goes on with what comes after it
   }
   bed.check();  // what comes next takes all particles to be valid
-  return result(bed, plan, course, early);
+  return result(bed, plan, early);
 }
 
 }  // namespace packmpi::run

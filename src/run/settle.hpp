@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "run/bed.hpp"
-#include "run/course.hpp"
 #include "run/journal.hpp"
 #include "run/keeper.hpp"
 
@@ -23,9 +22,9 @@ struct Settled {
   bool early = false;            ///< the criteria of stop = "settled" held before the duration was over
 };
 
-/// Collective. Integrates a part of the run from `course` on to its end; `keeper` may end it, by an Error, before. What
-/// is frozen adds nothing to the compaction rate.
-[[nodiscard]] Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part, Course& course);
+/// Collective. Integrates a part of the run from bed.progress.now on to its end; `keeper` may end it, by an Error,
+/// before. What is frozen adds nothing to the compaction rate.
+[[nodiscard]] Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part);
 
 /// Steps of a part at most; fewer if stop = "settled" ends it. Local.
 [[nodiscard]] std::int64_t steps_of(const scene::Scene& scene, Part part);

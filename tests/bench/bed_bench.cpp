@@ -65,8 +65,8 @@ std::vector<Grain> settled_brick(const input::Input& in) {
   for (int layer = 0; layer < brick_layers; ++layer) {
     bed.store.set_ghosts(0);
     const rsa::LayerRegion region{static_cast<std::uint32_t>(layer), observe::top(self, bed.store, scene),
-                                  in.layers.thickness, bed.count};
-    bed.count += rsa::insert(self, scene, bed.ownership, region, bed.store).inserted;
+                                  in.layers.thickness, bed.progress.count};
+    bed.progress.count += rsa::insert(self, scene, bed.ownership, region, bed.store).inserted;
     bed.neighborhood.rebuild(bed.store);
     bed.stepper.advance(bed.store, bed.neighborhood, 6000);
   }
@@ -89,7 +89,7 @@ void lay_out(run::Bed& bed, const std::vector<Grain>& brick, int tiles) {
       ++id;
     }
   }
-  bed.count = id;
+  bed.progress.count = id;
   bed.neighborhood.rebuild(bed.store);
 }
 
@@ -97,7 +97,7 @@ void lay_out(run::Bed& bed, const std::vector<Grain>& brick, int tiles) {
 void write_data(const run::Bed& bed, const char* path) {
   std::ofstream out(path);
   const double side = bed.scene.box.size[0];
-  out << "bed of packmpi: units si\n\n" << bed.count << " atoms\n1 atom types\n\n";
+  out << "bed of packmpi: units si\n\n" << bed.progress.count << " atoms\n1 atom types\n\n";
   out << fmt::format("-0.005 {0} xlo xhi\n-0.005 {0} ylo yhi\n-0.005 0.8 zlo zhi\n\nAtoms\n\n", side + 0.005);
   for (LocalIndex i = 0; i < bed.store.owned(); ++i) {
     const Vec3 x = bed.store.position(i);
@@ -128,20 +128,20 @@ void measure(run::Bed& bed, std::int64_t steps, int runs) {
     bed.stepper.advance(bed.store, bed.neighborhood, steps);
     costs.push_back(bed.comm.max(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC));
     const double seconds = bed.comm.max(MPI_Wtime() - start);
-    rates.push_back(static_cast<double>(bed.count) * static_cast<double>(steps) / seconds / bed.comm.size());
+    rates.push_back(static_cast<double>(bed.progress.count) * static_cast<double>(steps) / seconds / bed.comm.size());
   }
   std::ranges::sort(rates);
   std::ranges::sort(costs);
-  const double share = static_cast<double>(steps) * static_cast<double>(bed.count) / bed.comm.size();
+  const double share = static_cast<double>(steps) * static_cast<double>(bed.progress.count) / bed.comm.size();
   const observe::Contacts contacts =
       observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   const double bytes = bed.bytes_per_particle();
   const double median = rates[rates.size() / 2];
-  const double row = ledger_in_steps(bed, median * bed.comm.size() / static_cast<double>(bed.count));
+  const double row = ledger_in_steps(bed, median * bed.comm.size() / static_cast<double>(bed.progress.count));
   if (bed.comm.rank() != 0) return;
   fmt::print(
       "{} particles on {} ranks ({}), coordination {:.2f}, {:.2f} listed pairs a particle, {} rebuilds in {} steps\n",
-      bed.count, bed.comm.size(), dynamics::kernel_architecture(), contacts.coordination,
+      bed.progress.count, bed.comm.size(), dynamics::kernel_architecture(), contacts.coordination,
       static_cast<double>(bed.neighborhood.pairs().first.size()) / bed.store.owned(),
       bed.neighborhood.rebuilds() - rebuilds, steps * runs);
   fmt::print("particle-steps/s a core: median {:.2f}e6, least {:.2f}e6, most {:.2f}e6; {:.0f} bytes a particle\n",

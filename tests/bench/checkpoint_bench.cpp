@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   const particles::Store store = some_particles(comm, count);
   const std::array<const particles::Store*, 1> stores{&store};
   pack::RunState state;
-  state.count = count;
+  state.progress.count = count;
   state.effective_input = "seed = 1\n";
   std::vector<double> writing, reading;
   for (int k = 0; k < repeats; ++k) {

@@ -191,9 +191,9 @@ double ledger(double dt) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const scene::Scene scene = scene::build(in);
   run::Bed bed(comm, scene);
-  bed.count = rsa::insert(comm, scene, bed.ownership, {0, 0.3, in.layers.thickness, 0}, bed.store).inserted;
-  bed.first_ids = {0};
-  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+  bed.progress.count = rsa::insert(comm, scene, bed.ownership, {0, 0.3, in.layers.thickness, 0}, bed.store).inserted;
+  bed.progress.first_ids = {0};
+  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.progress.count);
   bed.neighborhood.rebuild(bed.store);
   double worst = 0.0;
   for (int k = 0; k < 40; ++k) {
@@ -239,9 +239,9 @@ bool is_valid(const input::Input& in, double factor) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const scene::Scene scene = scene::build(in);
   run::Bed bed(comm, scene);
-  bed.count = rsa::insert(comm, scene, bed.ownership, {0, 0.0, in.layers.thickness, 0}, bed.store).inserted;
-  bed.first_ids = {0};
-  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+  bed.progress.count = rsa::insert(comm, scene, bed.ownership, {0, 0.0, in.layers.thickness, 0}, bed.store).inserted;
+  bed.progress.first_ids = {0};
+  const double given = observe::energy_of(comm, bed.store, scene, 0, bed.progress.count);
   bed.neighborhood.rebuild(bed.store);
   const double step = factor * scene.time_step;
   bed.stepper.use({step, in.particles.youngs_modulus});

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/fnv.hpp"
 #include "disk/seal.hpp"
 #include "fuzz/demand.hpp"
 #include "pack/pack.hpp"
@@ -148,12 +149,12 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   state.version = "0.1.0";
   state.dimension = sample.dimension;
   state.rotation = sample.rotation;
-  state.first_ids = {0, 5};
-  state.count = particle_count;
-  state.steps = 12;
-  state.layers = {some_layer()};
-  state.phase = pack::Phase::settling;
-  state.row = some_layer();
+  state.progress.first_ids = {0, 5};
+  state.progress.count = particle_count;
+  state.progress.steps = 12;
+  state.progress.layers = {some_layer()};
+  state.progress.now.phase = pack::Phase::settling;
+  state.progress.now.row = some_layer();
   const std::array<const particles::Store*, 1> stores{&store};
   pack::write_checkpoint(alone, path, stores, state);
 }
@@ -295,7 +296,7 @@ class Forgery {
     bytes_ = sample.bytes.substr(0, static_cast<std::size_t>(sample.seal.end));
     const std::string& scene = sample.state.effective_input;
     replace(bytes_, before, text_);
-    replace(bytes_, raw(pack::hash_of(before + scene)), raw(pack::hash_of(text_ + scene)));
+    replace(bytes_, raw(fnv_add(fnv_start, before + scene)), raw(fnv_add(fnv_start, text_ + scene)));
     disk::Seal seal = sample.seal;
     seal.frame = disk::frame_digest(seal, [this](std::int64_t begin, std::int64_t size) {
       return bytes_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(size));

@@ -35,26 +35,29 @@ RunState some_state(int dimension, bool rotation, std::size_t count) {
   state.git = "abc-dirty";
   state.dimension = dimension;
   state.rotation = rotation;
-  state.first_ids = {0, 100, 100};
-  state.count = static_cast<GlobalId>(count);
-  state.steps = (std::int64_t{1} << 53) + 1;  // no double
-  state.particle_steps = INT64_MAX;
-  state.layers = testing::some_record(dimension, 2).layers;
-  state.compaction_rate = -0.0;
-  state.phase = Phase::settling;
-  state.moving_from = 5;
-  state.height = 0.3;
-  state.relaxations = 1;
-  state.relaxation_steps = 2;
-  state.height_before_relaxation = 0.7;
-  state.row = state.layers[1];
-  state.row.achieved_fraction = 0.1 + 0.2;
-  state.row.height = 4.9e-324;
-  state.done = 17;
-  state.phi_before = 1.0 / 3.0;
-  state.mean_height = 0.7;
-  state.calm_since = 3;
-  state.phi_calm = 0.3;
+  state.progress.first_ids = {0, 100, 100};
+  state.progress.count = static_cast<GlobalId>(count);
+  state.progress.steps = (std::int64_t{1} << 53) + 1;  // no double
+  state.progress.particle_steps = INT64_MAX;
+  state.progress.layers = testing::some_record(dimension, 2).layers;
+  state.progress.compaction_rate = -0.0;
+  state.progress.now.phase = Phase::settling;
+  state.progress.moving_from = 5;
+  state.progress.height = 0.3;
+  state.progress.relaxations = 1;
+  state.progress.relaxation_steps = 2;
+  state.progress.height_before_relaxation = 0.7;
+  state.progress.now.row = state.progress.layers[1];
+  state.progress.now.row.achieved_fraction = 0.1 + 0.2;
+  state.progress.now.row.height = 4.9e-324;
+  state.progress.now.done = 17;
+  state.progress.now.phi_before = 1.0 / 3.0;
+  state.progress.now.mean_height = 0.7;
+  state.progress.now.calm_since = 3;
+  state.progress.now.phi_calm = 0.3;
+  state.progress.now.told = 5;
+  state.progress.energy_given = 1e-300;
+  state.progress.series = {.rows = 12, .in_file = 11, .digest = UINT64_MAX};
   return state;
 }
 
@@ -67,14 +70,18 @@ std::vector<std::uint64_t> numbers_of(const RunState& state) {
     std::memcpy(&bits, &value, sizeof value);
     all.push_back(bits);
   };
-  for (const auto value : {state.serial, state.count, state.steps, state.particle_steps, state.done, state.moving_from,
-                           state.relaxations, state.relaxation_steps, state.calm_since})
+  for (const auto value : {state.serial, state.progress.count, state.progress.steps, state.progress.particle_steps,
+                           state.progress.now.done, state.progress.moving_from, state.progress.relaxations,
+                           state.progress.relaxation_steps, state.progress.now.calm_since, state.progress.now.told,
+                           state.progress.series.rows, state.progress.series.in_file,
+                           static_cast<std::int64_t>(state.progress.series.digest)})
     add(value);
-  for (const double value : {state.compaction_rate, state.phi_before, state.height, state.height_before_relaxation,
-                             state.mean_height, state.phi_calm})
+  for (const double value : {state.progress.compaction_rate, state.progress.now.phi_before, state.progress.height,
+                             state.progress.height_before_relaxation, state.progress.now.mean_height,
+                             state.progress.now.phi_calm, state.progress.energy_given})
     add(value);
-  std::vector<LayerRow> rows = state.layers;
-  rows.push_back(state.row);
+  std::vector<LayerRow> rows = state.progress.layers;
+  rows.push_back(state.progress.now.row);
   for (const LayerRow& row : rows) {
     for (const auto value : {row.inserted, row.total, row.attempts, row.steps}) add(value);
     for (const double value : {row.target_fraction, row.achieved_fraction, row.region_bottom, row.height, row.top,
@@ -89,11 +96,12 @@ void expect_same(const RunState& a, const RunState& b) {
   EXPECT_EQ(numbers_of(a), numbers_of(b));
   EXPECT_EQ(a.effective_input, b.effective_input);
   EXPECT_EQ(a.version + a.git, b.version + b.git);
-  EXPECT_EQ(a.first_ids, b.first_ids);
-  EXPECT_EQ(a.phase, b.phase);
-  EXPECT_EQ(a.row.stop_reason, b.row.stop_reason);
-  ASSERT_EQ(a.layers.size(), b.layers.size());
-  for (std::size_t k = 0; k < a.layers.size(); ++k) EXPECT_EQ(a.layers[k].stop_reason, b.layers[k].stop_reason);
+  EXPECT_EQ(a.progress.first_ids, b.progress.first_ids);
+  EXPECT_EQ(a.progress.now.phase, b.progress.now.phase);
+  EXPECT_EQ(a.progress.now.row.stop_reason, b.progress.now.row.stop_reason);
+  ASSERT_EQ(a.progress.layers.size(), b.progress.layers.size());
+  for (std::size_t k = 0; k < a.progress.layers.size(); ++k)
+    EXPECT_EQ(a.progress.layers[k].stop_reason, b.progress.layers[k].stop_reason);
 }
 
 std::string bytes_of(const std::string& path) {
@@ -175,7 +183,7 @@ TEST_P(Checkpoint, BeforeTheFirstLayer) {
   const std::array<const particles::Store*, 1> stores{&none};
   write_checkpoint(comm_, path, stores, empty);
   particles::Store back(layout_);
-  EXPECT_EQ(read_checkpoint(comm_, path, back).count, 0);
+  EXPECT_EQ(read_checkpoint(comm_, path, back).progress.count, 0);
   EXPECT_EQ(back.owned(), 0);
 }
 

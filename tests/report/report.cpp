@@ -11,6 +11,7 @@
 
 #include "disk/text_file.hpp"
 #include "pack/samples.hpp"
+#include "report/step_log.hpp"
 
 namespace packmpi::report {
 using namespace disk;
@@ -136,7 +137,8 @@ TEST_F(Report, TextIsWrittenWhole) {
 }
 
 TEST_F(Report, StepLogIsATable) {
-  StepLog log(comm_, folder_.file("a.csv"));
+  SeriesMark mark;
+  StepLog log(comm_, folder_.file("a.csv"), mark, false);
   log.append({.layer = 0,
               .step = 100,
               .time = 0.01,
@@ -156,7 +158,7 @@ TEST_F(Report, StepLogIsATable) {
   log.append({.layer = 1, .step = 200, .time = 0.02, .particles = 5});
   EXPECT_NE(read("a.csv").find("0,100,0.01,1234567890123,1.5,0.25,0.5,0.125,3,7,11,0.5,2,0.75,4,1,2,-3\n"),
             std::string::npos);  // before close()
-  log.close();
+  EXPECT_EQ(log.close(), 2);
   const std::string text = read("a.csv");
   EXPECT_EQ(
       text.substr(0, text.find('\n')),

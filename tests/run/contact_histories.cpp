@@ -53,7 +53,7 @@ void fill(Bed& bed) {
       bed.store.add(static_cast<GlobalId>(k), x, r, v, spin);
     }
   }
-  bed.count = static_cast<GlobalId>(5 * rows * per_row);
+  bed.progress.count = static_cast<GlobalId>(5 * rows * per_row);
   bed.neighborhood.rebuild(bed.store);
 }
 
@@ -143,7 +143,7 @@ TEST_P(ContactHistories, AreTheSameBitsOnEveryRankThroughEverything) {
   both.steps(120);
   const Histories early = told(both.alone);
   EXPECT_GT(early.size(), 30U);
-  const GlobalId some = both.bed.count / 3, more = both.bed.count / 2;
+  const GlobalId some = both.bed.progress.count / 3, more = both.bed.progress.count / 2;
   for (const GlobalId below : {some, more}) {
     both.each([&](Bed& p) {
       p.neighborhood.freeze(p.store, below);

@@ -133,9 +133,9 @@ TEST_F(Counters, AreTheSameInEachRun) {
 // Two layers in the air, of which the lower one is frozen.
 void insert_two(Bed& bed, double thickness) {
   for (std::uint32_t layer = 0; layer < 2; ++layer) {
-    bed.first_ids.push_back(bed.count);
-    const rsa::LayerRegion region{layer, thickness * layer, thickness, bed.count};
-    bed.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
+    bed.progress.first_ids.push_back(bed.progress.count);
+    const rsa::LayerRegion region{layer, thickness * layer, thickness, bed.progress.count};
+    bed.progress.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
   }
   bed.freeze_older();
   bed.neighborhood.rebuild(bed.store);

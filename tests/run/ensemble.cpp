@@ -3,12 +3,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
 
+#include "disk/lock.hpp"
 #include "input/read.hpp"
+#include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "report/ensemble.hpp"
 #include "run/make_pack.hpp"
@@ -22,7 +31,7 @@ const std::string scene_text =
     "[container]\nsize = [0.3, 0.3, 0.1]\n"
     "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\npoisson_ratio = 0.25\n"
     "radius = { distribution = \"equal\", value = 0.02 }\n"
-    "[layers]\nthickness = 0.1\nfraction = 0.25\nduration = 0.02\nmaximum = 2\n[jamming]\ngravity = 2.0\n"
+    "[layers]\nthickness = 0.1\nfraction = 0.2\nduration = 0.02\nmaximum = 2\n[jamming]\ngravity = 2.0\n"
     "[dynamics]\ntime_step = 1.0e-4\n[ensemble]\nsets = 2\npacks = 2\n";
 
 class Ensembles : public ::testing::Test {
@@ -34,7 +43,10 @@ class Ensembles : public ::testing::Test {
     if (comm_.rank() == 0) fs::remove_all(folder_);
     comm_.barrier();
   }
-  [[nodiscard]] input::Input scene() const { return input::parse(scene_text, "box.toml", {}); }
+  std::vector<std::string> changes_;  // of the scene, as --set
+  mutable std::string words_, said_;  // of the last error, on the screen
+
+  [[nodiscard]] input::Input scene() const { return input::parse(scene_text, "box.toml", {changes_}); }
   [[nodiscard]] Options options() const {
     Options o;
     o.folder = folder_.string();
@@ -48,8 +60,9 @@ class Ensembles : public ::testing::Test {
       code = make_ensemble(comm_, scene(), o);
     } catch (const Error& error) {
       code = static_cast<int>(error.code());
+      words_ = error.what();
     }
-    testing::internal::GetCapturedStdout();
+    said_ = testing::internal::GetCapturedStdout();
     return code;
   }
   [[nodiscard]] pack::PackRows pack(const std::string& name) const {
@@ -80,10 +93,24 @@ TEST_F(Ensembles, MembersHaveSeedsAndNamesOfTheirOwn) {
   ASSERT_EQ(all.size(), 4U);
   EXPECT_EQ(all[0].name, "box_1_1");
   EXPECT_EQ(all[3].name, "box_2_2");
-  EXPECT_EQ(all[3].seed, all[0].seed + 3);
+  EXPECT_EQ(all[3].seed, all[0].seed + 10001);
   input::Input last = scene();
   last.seed = 9223372036854775806ULL;
   EXPECT_THROW(static_cast<void>(members(last)), Error);
+}
+
+TEST_F(Ensembles, SeedsStayWhenItGrowsAndNoneComesTwice) {
+  input::Input small = scene(), large = scene();
+  large.ensemble = {.sets = 3, .packs = 4096};
+  std::map<std::string, std::uint64_t> seeds;
+  std::set<std::uint64_t> different;
+  for (const Member& member : members(large)) {
+    seeds[member.name] = member.seed;
+    different.insert(member.seed);
+  }
+  EXPECT_EQ(different.size(), 3U * 4096U);
+  for (const Member& member : members(small)) EXPECT_EQ(seeds.at(member.name), member.seed) << member.name;
+  EXPECT_EQ(seeds.at("box_1_17"), small.seed + 16) << "those of one set are as they ever were";
 }
 
 TEST_F(Ensembles, EachPackIsAsWhenRunAloneAndTheTableIsRight) {
@@ -138,6 +165,175 @@ TEST_F(Ensembles, APackThatFailsStopsNoOther) {
   EXPECT_TRUE(json["packs"][1]["phi"].is_null());
   EXPECT_EQ(json["packs"][3]["code"], 0);
   EXPECT_EQ(json["statistics"]["all"]["phi"]["count"], 3);
+}
+
+TEST_F(Ensembles, GrownItMakesWhatIsNewAndKeepsTheRest) {
+  EXPECT_EQ(make(options()), 0);
+  const pack::PackRows before = pack("box_2_1");
+  const auto written = fs::last_write_time(folder_ / "box_2_1.hdf");
+  comm_.barrier();
+  changes_ = {"ensemble.packs=3"};
+  Options go_on = options();
+  go_on.restart = "auto";
+  EXPECT_EQ(make(go_on), 0) << words_;
+  EXPECT_EQ(table()["packs"].size(), 6U);
+  EXPECT_EQ(fs::last_write_time(folder_ / "box_2_1.hdf"), written);
+  EXPECT_EQ(pack("box_2_1").position, before.position);
+  EXPECT_NE(pack("box_1_3").position, before.position);
+  std::set<std::uint64_t> seeds;
+  const nlohmann::json grown = table();
+  for (const auto& row : grown["packs"]) seeds.insert(row["seed"].get<std::uint64_t>());
+  EXPECT_EQ(seeds.size(), 6U);
+  comm_.barrier();
+  expect_as_when_run_alone();
+}
+
+// What stands under the right name and is not the pack of the scene is refused by its name, and never in a table.
+TEST_F(Ensembles, WhatIsTakenOverIsLookedAt) {
+  EXPECT_EQ(make(options()), 0);
+  Options go_on = options();
+  go_on.restart = "auto";
+  const auto refused = [&](const std::string& name, const std::string& why) {
+    comm_.barrier();
+    if (comm_.rank() == 0) fs::remove(folder_ / "box.ensemble.json");
+    comm_.barrier();
+    EXPECT_EQ(make(go_on), 6) << words_;
+    EXPECT_NE(words_.find(name), std::string::npos) << words_;
+    EXPECT_NE(words_.find(why), std::string::npos) << words_;
+    EXPECT_EQ(words_.find('\n'), std::string::npos) << words_;
+    EXPECT_FALSE(fs::exists(folder_ / "box.ensemble.json"));
+    comm_.barrier();
+  };
+  for (const char* change : {"contact.friction=0.1", "seed=2", "layers.maximum=3", "output.contacts=true"}) {
+    changes_ = {change};
+    const std::string key = std::string(change).substr(0, std::string(change).find('='));
+    refused("box_1_1.hdf", key + ": ");
+  }
+  changes_ = {};
+  const auto with = [&](const std::string& file, const std::function<void(const fs::path&)>& spoil,
+                        const std::string& why) {
+    comm_.barrier();
+    const fs::path path = folder_ / file, kept = folder_ / "kept";
+    if (comm_.rank() == 0) {
+      fs::copy_file(path, kept);
+      spoil(path);
+    }
+    refused(file, why);
+    if (comm_.rank() == 0) fs::rename(kept, path);
+    comm_.barrier();
+  };
+  with(
+      "box_1_2.hdf", [](const fs::path& path) { fs::resize_file(path, fs::file_size(path) / 2); }, "seal");
+  with(
+      "box_2_2.hdf", [](const fs::path& path) { fs::resize_file(path, 0); }, "seal");
+  with(
+      "box_2_1.json", [](const fs::path& path) { std::ofstream(path) << "{}"; }, "edited");
+  with(
+      "box_2_1.json",
+      [&](const fs::path& path) {
+        fs::copy_file(folder_ / "box_2_2.json", path, fs::copy_options::overwrite_existing);
+      },
+      "not the summary of");
+  with(
+      "box_2_1.json",
+      [](const fs::path& path) {
+        std::ifstream in(path);
+        std::string text{std::istreambuf_iterator<char>(in), {}};
+        const std::size_t at = text.find("\"phi_bulk\": 0.") + 14;
+        text[at] = text[at] == '9' ? '8' : '9';
+        std::ofstream(path) << text;
+      },
+      "edited");
+  EXPECT_EQ(make(go_on), 0) << words_;
+  EXPECT_EQ(table()["packs"].size(), 4U);
+}
+
+TEST_F(Ensembles, ACodeIsKept) {
+  changes_ = {"container.size=[0.3,0.3,0.4]"};  // two layers do not reach it
+  EXPECT_EQ(make(options()), 3);
+  Options go_on = options();
+  go_on.restart = "auto";
+  EXPECT_EQ(make(go_on), 3);
+  const nlohmann::json kept = table();
+  for (const auto& row : kept["packs"]) EXPECT_EQ(row["code"], 3);
+  if (comm_.rank() == 0) {
+    EXPECT_EQ(std::count(said_.begin(), said_.end(), '\n'), 1) << said_;
+    EXPECT_NE(said_.find("all 4 packs of box are finished"), std::string::npos) << said_;
+    fs::remove(folder_ / "box_1_1.hdf");
+  }
+  comm_.barrier();
+  EXPECT_EQ(make(go_on), 3) << "one is made, three are kept";
+}
+
+TEST_F(Ensembles, LimitsHoldForTheWhole) {
+  Options stop = options();
+  stop.max_steps = 500;  // of 400 a pack: a group of ranks makes one and a quarter
+  EXPECT_EQ(make(stop), 75);
+  comm_.barrier();
+  EXPECT_FALSE(fs::exists(folder_ / "box.ensemble.csv"));
+  if (comm_.rank() == 0) {
+    std::int64_t steps = 0, packs = 0;
+    for (const Member& member : members(scene())) {
+      packs += fs::exists(folder_ / (member.name + ".hdf")) ? 1 : 0;
+      const fs::path slot = folder_ / (member.name + ".ckpt.A.hdf");
+      if (fs::exists(slot)) steps += pack::read_state(slot.string()).progress.steps;
+    }
+    std::int64_t expected = 0;
+    for (int group = 0; group < comm_.size(); ++group) {
+      expected += std::min<std::int64_t>(500, 400 * ((4 - group + comm_.size() - 1) / comm_.size()));
+    }
+    EXPECT_EQ(steps + 400 * packs, expected) << packs << " packs";
+    EXPECT_NE(words_.find("of 4 packs made"), std::string::npos) << words_;
+  }
+  comm_.barrier();
+  Options hours = options();
+  hours.restart = "auto";
+  hours.max_hours = 1e-9;
+  EXPECT_EQ(make(hours), 75);
+  EXPECT_EQ(words_.find('\n'), std::string::npos) << words_;
+}
+
+// In short packs nobody looks for it once a second: between them somebody does.
+TEST_F(Ensembles, AStopFileEndsItWithOneLine) {
+  changes_ = {"ensemble.packs=16"};
+  std::thread user([this] {
+    if (comm_.rank() != 0) return;
+    for (int turn = 0; turn < 3000 && !fs::exists(folder_ / "box_1_1.hdf"); ++turn) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::ofstream(folder_ / "STOP");
+  });
+  testing::internal::CaptureStderr();
+  const int code = make(options());
+  const std::string errors = testing::internal::GetCapturedStderr();
+  user.join();
+  EXPECT_EQ(code, 75);
+  EXPECT_EQ(errors, "");
+  EXPECT_EQ(words_.find('\n'), std::string::npos) << words_;
+  comm_.barrier();
+  EXPECT_FALSE(fs::exists(folder_ / "box.ensemble.json"));
+  Options go_on = options();
+  go_on.restart = "auto";
+  EXPECT_EQ(make(go_on), 2) << "it is still there";
+  EXPECT_NE(words_.find("STOP exists"), std::string::npos) << words_;
+}
+
+TEST_F(Ensembles, OneAtATimeInAFolder) {
+  disk::Lock other;
+  if (comm_.rank() == 0) {
+    fs::create_directories(folder_);
+    other = disk::Lock((folder_ / "box.lock").string());
+  }
+  comm_.barrier();
+  for (const char* restart : {"", "auto"}) {
+    for (const bool force : {false, true}) {
+      Options second = options();
+      second.restart = restart;
+      second.force = force;
+      EXPECT_EQ(make(second), 2);
+      EXPECT_NE(words_.find("box.lock is held by process"), std::string::npos) << words_;
+    }
+  }
 }
 
 }  // namespace

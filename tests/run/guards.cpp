@@ -35,7 +35,7 @@ class Guards : public ::testing::Test {
       const Vec3 x{0.05 + 0.06 * static_cast<double>(id), 0.5, 0.5};
       if (bed_.ownership.owner(bed_.ownership.grid().column(x)) == comm_.rank()) bed_.store.add(id, x, 0.02, {}, {});
     }
-    bed_.count = 16;
+    bed_.progress.count = 16;
     bed_.neighborhood.rebuild(bed_.store);
   }
   // The record of a particle, if it is here.
@@ -172,7 +172,7 @@ TEST(GuardedRun, LeavesTheLastValidCheckpointAndIsNotContinuedAsAnotherScene) {
   ASSERT_EQ(std::sscanf(first.second.c_str(), "layer 1, step %ld,", &failed), 1) << first.second;
   std::int64_t newest = 0;
   for (const char* slot : {"soft.ckpt.A.hdf", "soft.ckpt.B.hdf"}) {
-    newest = std::max(newest, pack::read_state((fs::path(options.folder) / slot).string()).steps);
+    newest = std::max(newest, pack::read_state((fs::path(options.folder) / slot).string()).progress.steps);
   }
   EXPECT_GT(newest, 50);
   EXPECT_LT(newest, failed);

@@ -21,9 +21,9 @@ struct Layer {
   Bed bed;
   explicit Layer(const input::Input& in) : scene(scene::build(in)), bed(comm, scene) {
     const rsa::LayerRegion region{0, 0.3, in.layers.thickness, 0};
-    bed.count = rsa::insert(comm, scene, bed.ownership, region, bed.store).inserted;
-    bed.first_ids = {0};
-    bed.energy_given = observe::energy_of(comm, bed.store, scene, 0, bed.count);
+    bed.progress.count = rsa::insert(comm, scene, bed.ownership, region, bed.store).inserted;
+    bed.progress.first_ids = {0};
+    bed.progress.energy_given = observe::energy_of(comm, bed.store, scene, 0, bed.progress.count);
     bed.neighborhood.rebuild(bed.store);
   }
   [[nodiscard]] observe::Ledger now() const {
@@ -60,10 +60,10 @@ double worst_departure(const Case& what, double step, double& most_elastic) {
   for (int k = 0; k < 40; ++k) {
     layer.advance(0.01);
     const observe::Ledger now = layer.now();
-    worst = std::max(worst, std::abs(total(now) - layer.bed.energy_given));
-    most_elastic = std::max(most_elastic, now.elastic_energy / layer.bed.energy_given);
+    worst = std::max(worst, std::abs(total(now) - layer.bed.progress.energy_given));
+    most_elastic = std::max(most_elastic, now.elastic_energy / layer.bed.progress.energy_given);
   }
-  return worst / layer.bed.energy_given;
+  return worst / layer.bed.progress.energy_given;
 }
 
 TEST(Ledger, EnergyStaysToFirstOrderInTheStep) {
@@ -121,10 +121,10 @@ TEST(Ledger, LossesAreBookedAsDissipated) {  // two spheres head-on, of the lite
     if (mine) layer.bed.store.add(side, x, 0.02, {side == 0 ? 0.5 : -0.5, 0.0, 0.0}, {});
   }
   layer.bed.neighborhood.rebuild(layer.bed.store);
-  layer.bed.energy_given = observe::energy_of(layer.comm, layer.bed.store, layer.scene, 0, 2);
+  layer.bed.progress.energy_given = observe::energy_of(layer.comm, layer.bed.store, layer.scene, 0, 2);
   layer.advance(0.02);
-  const double dissipated = layer.bed.energy_given - total(layer.now());
-  EXPECT_NEAR(dissipated / layer.bed.energy_given, 1.0 - restitution * restitution, 1e-3);
+  const double dissipated = layer.bed.progress.energy_given - total(layer.now());
+  EXPECT_NEAR(dissipated / layer.bed.progress.energy_given, 1.0 - restitution * restitution, 1e-3);
 }
 
 TEST(Ledger, TheSameBitsOnAnyNumberOfRanks) {
@@ -133,7 +133,8 @@ TEST(Ledger, TheSameBitsOnAnyNumberOfRanks) {
   all.advance(0.35);
   const comm::Comm self(MPI_COMM_SELF);
   Bed one(self, all.scene);
-  one.count = rsa::insert(self, all.scene, one.ownership, {0, 0.3, in.layers.thickness, 0}, one.store).inserted;
+  one.progress.count =
+      rsa::insert(self, all.scene, one.ownership, {0, 0.3, in.layers.thickness, 0}, one.store).inserted;
   one.neighborhood.rebuild(one.store);
   one.stepper.advance(one.store, one.neighborhood, 3500);
   const observe::Ledger a = all.now();

@@ -55,14 +55,14 @@ struct Placed {
   explicit Placed(const input::Input& in) : scene(scene::build(in)), bed(comm, scene) {
     for (const Sphere& s : spheres()) {
       if (bed.ownership.owner(bed.ownership.grid().column(s.x)) == comm.rank()) {
-        bed.store.add(bed.count, s.x, s.r, s.v, s.w);
+        bed.store.add(bed.progress.count, s.x, s.r, s.v, s.w);
       }
-      ++bed.count;
+      ++bed.progress.count;
     }
     bed.neighborhood.rebuild(bed.store);
   }
   [[nodiscard]] observe::Ledger now() const {
-    return observe::ledger(comm, bed.store, scene, bed.stepper.law(), bed.neighborhood, bed.moving_from);
+    return observe::ledger(comm, bed.store, scene, bed.stepper.law(), bed.neighborhood, bed.progress.moving_from);
   }
 };
 
@@ -105,9 +105,9 @@ TEST(Reported, FrozenParticlesTakeTheirEnergyAlongAndBringBackThatOfTheirHeight)
   in.dynamics.window = 1;
   Placed placed(in);
   Bed& bed = placed.bed;
-  bed.first_ids = {0, 2};
+  bed.progress.first_ids = {0, 2};
   const double all = observe::energy_of(placed.comm, bed.store, placed.scene, 0, 5);
-  bed.energy_given = all;
+  bed.progress.energy_given = all;
   double frozen = 0.0, frozen_height = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     frozen += kinetic_energy(spheres()[k]) + potential_energy(spheres()[k]);
@@ -115,16 +115,18 @@ TEST(Reported, FrozenParticlesTakeTheirEnergyAlongAndBringBackThatOfTheirHeight)
   }
   bed.freeze_older();
   bed.balance();
-  EXPECT_EQ(bed.moving_from, 2);
-  EXPECT_NEAR(bed.energy_given, all - frozen, 1e-13 * all);
+  EXPECT_EQ(bed.progress.moving_from, 2);
+  EXPECT_NEAR(bed.progress.energy_given, all - frozen, 1e-13 * all);
   const observe::Ledger less = placed.now();
-  EXPECT_NEAR(less.kinetic_energy + less.potential_energy, bed.energy_given, 1e-13 * all) << "nothing was lost";
+  EXPECT_NEAR(less.kinetic_energy + less.potential_energy, bed.progress.energy_given, 1e-13 * all)
+      << "nothing was lost";
   bed.release();
   bed.balance();
-  EXPECT_EQ(bed.moving_from, 0);
-  EXPECT_NEAR(bed.energy_given, all - frozen + frozen_height, 1e-13 * all);
+  EXPECT_EQ(bed.progress.moving_from, 0);
+  EXPECT_NEAR(bed.progress.energy_given, all - frozen + frozen_height, 1e-13 * all);
   const observe::Ledger again = placed.now();
-  EXPECT_NEAR(again.kinetic_energy + again.potential_energy, bed.energy_given, 1e-13 * all) << "nothing was lost";
+  EXPECT_NEAR(again.kinetic_energy + again.potential_energy, bed.progress.energy_given, 1e-13 * all)
+      << "nothing was lost";
 }
 
 TEST(Reported, TheFloorIsPushedHarderByWhatComesThanByWhatGoes) {

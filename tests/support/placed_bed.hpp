@@ -15,8 +15,8 @@ class Bench {
 
   void place(const Vec3& x, double r, const Vec3& v = {}, const Vec3& omega = {}) {
     const auto column = bed_.ownership.grid().column(x);
-    if (bed_.ownership.owner(column) == bed_.comm.rank()) bed_.store.add(bed_.count, x, r, v, omega);
-    ++bed_.count;
+    if (bed_.ownership.owner(column) == bed_.comm.rank()) bed_.store.add(bed_.progress.count, x, r, v, omega);
+    ++bed_.progress.count;
   }
   void start() { bed_.neighborhood.rebuild(bed_.store); }
   void step(std::int64_t steps = 1) { bed_.stepper.advance(bed_.store, bed_.neighborhood, steps); }

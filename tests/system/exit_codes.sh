@@ -43,6 +43,10 @@ before=$(md5sum out/*)
 expect 2 'quickstart.hdf exists; use --force' "${tiny[@]}" -o out -q
 must test "$before" = "$(md5sum out/*)"                    # not a byte was touched
 expect 0 'height' "${tiny[@]}" -o out -q --force
+before=$(md5sum out/*)
+expect 0 'quickstart.hdf is finished, whole, and of this scene' "${tiny[@]}" -o out -q --restart auto
+expect 6 'quickstart.hdf is of another scene: seed: 1 before, 2 now' "${tiny[@]}" -o out -q --restart auto --seed 2
+must test "$before" = "$(md5sum out/*)"
 
 expect 3 'layers.maximum' "${tiny[@]}" -o short -q --set layers.maximum=1 --set 'container.size=[0.3,0.3,0.4]'
 must test -s short/quickstart.hdf                          # a missed target still leaves its pack
