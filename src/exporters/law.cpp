@@ -37,7 +37,17 @@ double shear_modulus(const Specimen& specimen) {
   return p.youngs_modulus / (2.0 * (1.0 + p.poisson_ratio));
 }
 
-std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid) {
+bool remembers(const Specimen& specimen) { return specimen.scene.in.contact.tangential == input::Tangential::mindlin; }
+
+double tangential_damping(const Specimen& specimen) {
+  const input::Input& in = specimen.scene.in;
+  const double nu = in.particles.poisson_ratio;
+  const double shear = (1.0 - nu) / (2.0 * (2.0 - nu));  // G* / E*
+  const bool rolls = specimen.rotation && in.contact.friction_velocity == input::FrictionVelocity::contact;
+  return std::sqrt(4.0 * shear * (rolls ? 2.0 / 7.0 : 1.0));
+}
+
+std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid, Rolling rolling) {
   const input::Input& in = specimen.scene.in;
   std::vector<std::string> lines;
   if (specimen.scene.features.near_field) lines.emplace_back("the near-field force of the scene");
@@ -47,6 +57,8 @@ std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid) {
     if (fluid == Fluid::not_carried) lines.emplace_back("the drag of the scene");
     if (fluid == Fluid::at_rest && moves) lines.emplace_back("the velocity of the scene's fluid");
   }
+  const bool resists = in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0;
+  if (resists && rolling == Rolling::not_carried) lines.emplace_back("the resistance to rolling and twisting");
   const bool slides = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
   if (specimen.rotation && slides && in.contact.friction_velocity == input::FrictionVelocity::centre) {
     lines.emplace_back("friction by the velocities of centres: here it is that of the contact point");
@@ -54,9 +66,10 @@ std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid) {
   return lines;
 }
 
-std::string notes(const Specimen& specimen, Fluid fluid, std::string_view mark) {
+std::string notes(const Specimen& specimen, Fluid fluid, std::string_view mark, Rolling rolling) {
   std::string text = header(specimen, mark);
-  for (const std::string& line : left_out(specimen, fluid)) text += fmt::format("{}not carried over: {}\n", mark, line);
+  for (const std::string& line : left_out(specimen, fluid, rolling))
+    text += fmt::format("{}not carried over: {}\n", mark, line);
   return text;
 }
 

@@ -19,11 +19,21 @@ namespace packmpi::exporters {
 /// Shear modulus of the particles [Pa].
 [[nodiscard]] double shear_modulus(const Specimen& specimen);
 
+/// Has the scene friction with memory (contact.tangential = "mindlin")?
+[[nodiscard]] bool remembers(const Specimen& specimen);
+/// Tangential over normal damping coefficient, sqrt(4 G* m_t / (E* m*)): the damping ratio is the same for both; like
+/// materials and rigid walls have the same.
+[[nodiscard]] double tangential_damping(const Specimen& specimen);
+
 /// What the receiving code's input keeps of the scene's drag: all, all but a fluid that moves, nothing.
 enum class Fluid { carried, at_rest, not_carried };
+/// Whether it keeps the resistance to rolling and twisting.
+enum class Rolling { not_carried, carried };
 /// What this scene has and the input does not carry; a line each, none if it is all there.
-[[nodiscard]] std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid);
+[[nodiscard]] std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid,
+                                                Rolling rolling = Rolling::not_carried);
 /// The header, and the same as "not carried over: ..."; each line behind `mark`.
-[[nodiscard]] std::string notes(const Specimen& specimen, Fluid fluid, std::string_view mark);
+[[nodiscard]] std::string notes(const Specimen& specimen, Fluid fluid, std::string_view mark,
+                                Rolling rolling = Rolling::not_carried);
 
 }  // namespace packmpi::exporters

@@ -25,43 +25,58 @@ std::string material(const Specimen& s) {
       "fix             m3 all property/global coefficientRestitution peratomtypepair 2 {3} {3} {3} "
       "{3}\n"
       "fix             m4 all property/global coefficientFriction peratomtypepair 2 {4} {5} {5} "
-      "{5}\n",
-      modulus, wall, in.particles.poisson_ratio, e, mu, mu_wall);
+      "{5}\n{6}",
+      modulus, wall, in.particles.poisson_ratio, e, mu, mu_wall,
+      in.contact.rolling_friction > 0.0
+          ? fmt::format("fix             m5 all property/global coefficientRollingFriction peratomtypepair 2 {0} {0} "
+                        "{0} {0}\n",
+                        in.contact.rolling_friction)
+          : "");
 }
 
-/// No attraction while particles part, if the scene has none.
-const char* limit(const Specimen& s) { return s.scene.in.contact.tension_cutoff ? " limitForce on" : ""; }
+/// LIGGGHTS' spring of rolling is k_t r*, as the scene's.
+const char* rolling(const Specimen& s) {
+  return s.scene.in.contact.rolling_friction > 0.0 ? " rolling_friction epsd2" : "";
+}
+
+/// Settings of the model: twisting shares the limit of rolling; no attraction while particles part, if the scene has
+/// none.
+std::string limit(const Specimen& s) {
+  const input::Contact& c = s.scene.in.contact;
+  const bool twists = c.rolling_friction > 0.0 && c.twisting_friction > 0.0;
+  return fmt::format("{}{}", twists ? " torsionTorque on" : "", c.tension_cutoff ? " limitForce on" : "");
+}
 
 std::string walls(const Specimen& s) {
   constexpr const char* line =
-      "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}} primitive type 2 {0}plane "
+      "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}}{4} primitive type 2 {0}plane "
       "{2}{3}\n";
   std::string text;
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
     if (s.periodic(axis)) continue;
-    text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s));
-    text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s));
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s));
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s));
   }
-  return text + fmt::format(fmt::runtime(line), "xyz"[s.vertical()], "floor", 0.0, limit(s));
+  return text + fmt::format(fmt::runtime(line), "xyz"[s.vertical()], "floor", 0.0, limit(s), rolling(s));
 }
 
 std::string in_file(const Specimen& s) {
   const input::Input& in = s.scene.in;
-  std::string text = notes(s, Fluid::at_rest, "# ");
+  std::string text = notes(s, Fluid::at_rest, "# ", Rolling::carried);
   text += fmt::format(
       "# liggghts -in THIS [-var steps N]: reads the pack, tells what is in it, and lets it settle for some steps.\n"
       "variable        data index {}\nvariable        steps index 200\n"
-      "# no_history is the nearest to the scene's sliding friction; its slip is damped by the restitution, so none "
-      "without\n"
+      "# history: friction with memory; no_history: sliding, whose slip is damped by the restitution, so none without\n"
       "variable        tangential index {}\n\n"
       "units           si\ndimension       {}\natom_style      granular\natom_modify     map array\nhard_particles  "
       "yes\nboundary       "
       "{}\nnewton          off\ncommunicate     single vel yes\nread_data       ${{data}}\n\n"
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n",
-      liggghts_word(s.file), in.contact.damping_ratio > 0.0 ? "no_history" : "history", s.flat() ? 2 : 3,
-      boundary_words(s), s.scene.skin);
+      liggghts_word(s.file), in.contact.damping_ratio > 0.0 && !remembers(s) ? "no_history" : "history",
+      s.flat() ? 2 : 3, boundary_words(s), s.scene.skin);
   text += material(s);
-  text += fmt::format("pair_style      gran model hertz tangential ${{tangential}}{}\npair_coeff      * *\n", limit(s));
+  text += fmt::format("pair_style      gran model hertz tangential ${{tangential}}{}{}\npair_coeff      * *\n",
+                      rolling(s), limit(s));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
   if (in.drag.coefficient > 0.0) text += fmt::format("fix             drag all viscous {}\n", in.drag.coefficient);

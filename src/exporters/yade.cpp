@@ -58,11 +58,11 @@ std::string script(const Specimen& s) {
   const double g = in.jamming.gravity;
   std::string text = notes(s, Fluid::not_carried, "# ");
   text += fmt::format(
-      "# not carried over: velocities and spins; the friction here has a history (Mindlin)\n"
+      "# not carried over: velocities and spins{}\n"
       "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
       "import math\nimport os\nfrom yade import pack, utils\n\n"
       "data = os.environ.get('PACK_DATA', {})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
-      python_string(s.file));
+      remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file));
   text += materials(s);
   text += fmt::format(
       "spheres = pack.SpherePack()\nspheres.load(data)\n"
