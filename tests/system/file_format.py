@@ -103,7 +103,7 @@ def check_json(path, table, page):
     names = {part: {name.split("@")[1] for name in table if name.startswith(f"/{group}/@")}
              for part, group in (("summary", "summary"), ("audit", "summary/audit"), ("provenance", "provenance"))}
     expect(set(summary) == {"format", "format_version", "target", "achieved", "sizes", "audit", "layers", "counters", "costs",
-                            "moving_share", "provenance", "units"}, f"{path.name}: parts are {sorted(summary)}")
+                            "moving_share", "provenance", "seal", "units"}, f"{path.name}: parts are {sorted(summary)}")
     for part in ("counters", "costs"):
         expect(set(summary[part]) == set(re.findall(rf"`{part}\.(\w+)`", page)),
                f"{path.name}: {part} are {sorted(summary[part])}")
