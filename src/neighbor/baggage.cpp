@@ -31,13 +31,6 @@ void Baggage::keep(std::span<const LocalIndex> kept) {
 
 void Baggage::permute(std::span<const LocalIndex> order) { keep(order); }
 
-const double* Baggage::find(LocalIndex slot, GlobalId partner) const noexcept {
-  for (std::int64_t k = first(slot); k != none; k = next(item(k))) {
-    if (Baggage::partner(item(k)) == partner) return item(k) + 2;
-  }
-  return nullptr;
-}
-
 void Baggage::write(LocalIndex slot, std::vector<std::byte>& out) const {
   const auto put = [&out](const void* from, std::size_t bytes) {
     const auto* begin = static_cast<const std::byte*>(from);

@@ -11,8 +11,7 @@
 namespace packmpi::neighbor {
 
 /// For each owned particle of a store, in its slots, a list of (partner, stored doubles), oriented from the particle to
-/// the partner. The partner is the id of a particle, or -1 - the number of a wall. A contact of two particles is held
-/// at its higher id, and where they have different owners at the lower one, too. Local: no MPI.
+/// the partner. The partner is the id of a particle, or -1 - the number of a wall. Local: no MPI.
 class Baggage {
  public:
   explicit Baggage(int doubles) : doubles_(static_cast<std::size_t>(doubles)), each_(doubles_ + 2) {}
@@ -43,7 +42,12 @@ class Baggage {
   template <class See>
   void each(LocalIndex slot, See see) const;
   /// The stored doubles of the contact of `slot` with `partner`; null if there is none.
-  [[nodiscard]] const double* find(LocalIndex slot, GlobalId partner) const noexcept;
+  [[nodiscard]] const double* find(LocalIndex slot, GlobalId partner) const noexcept {
+    for (std::int64_t k = first(slot); k != none; k = next(item(k))) {
+      if (Baggage::partner(item(k)) == partner) return item(k) + 2;
+    }
+    return nullptr;
+  }
 
   /// The list of `slot` at the end of `out`, and read back from `in` as that of an appended particle; returns how many
   /// bytes it took. Errors: none, the bytes are our own.

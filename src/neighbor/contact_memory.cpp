@@ -23,31 +23,53 @@ bool ContactMemory::is_zero(const std::vector<double>& values, std::size_t entri
   return true;
 }
 
-void ContactMemory::pick_up(const particles::Store& store, const PairList& pairs, const WallList& walls,
-                            std::span<const Rank> destination) {
-  if (!in_use() || !listed_) return;
+void ContactMemory::begin_pick_up(LocalIndex owned) {
   listed_ = false;
   baggage_.clear();
-  baggage_.fit(store.owned());
+  baggage_.fit(owned);
   baggage_.reserve(expected_);
-  const std::size_t entries = pairs.first.size();
-  for (std::size_t p = 0; p < entries; ++p) {
-    if (is_zero(pair_values_, entries, p)) continue;
-    const LocalIndex i = pairs.first[p], j = pairs.second[p];
-    const GlobalId a = id_of(store, i), b = id_of(store, j);
-    const double* values = &pair_values_[p];
-    const bool ours = j < owned_;
-    const bool part = ours && !destination.empty() &&
-                      destination[static_cast<std::size_t>(i)] != destination[static_cast<std::size_t>(j)];
-    if (!ours || part || a > b) baggage_.add(i, b, values, entries, the_same_.data());
-    if (ours && (part || b > a)) baggage_.add(j, a, values, entries, signs_.data());
-  }
+}
+
+void ContactMemory::end_pick_up(const WallList& walls) {
   const std::size_t contacts = walls.particle.size();
   for (std::size_t w = 0; w < contacts; ++w) {
     if (is_zero(wall_values_, contacts, w)) continue;
     baggage_.add(walls.particle[w], wall_partner(walls.wall[w]), &wall_values_[w], contacts, the_same_.data());
   }
   expected_ = baggage_.size() + baggage_.size() / 16;
+}
+
+void ContactMemory::pick_up(const particles::Store& store, const PairList& pairs, const WallList& walls,
+                            std::span<const Rank> destination) {
+  if (!in_use() || !listed_) return;
+  begin_pick_up(store.owned());
+  const std::size_t entries = pairs.first.size();
+  for (std::size_t p = 0; p < entries; ++p) {
+    if (is_zero(pair_values_, entries, p)) continue;
+    const LocalIndex i = pairs.first[p], j = pairs.second[p];
+    baggage_.add(i, id_of(store, j), &pair_values_[p], entries, the_same_.data());
+    const bool parts = j < owned_ && !destination.empty() &&
+                       destination[static_cast<std::size_t>(i)] != destination[static_cast<std::size_t>(j)];
+    if (parts) baggage_.add(j, id_of(store, i), &pair_values_[p], entries, signs_.data());
+  }
+  end_pick_up(walls);
+}
+
+void ContactMemory::pick_up_by_id(const particles::Store& store, const PairList& pairs, const WallList& walls) {
+  if (!in_use() || !listed_) return;
+  begin_pick_up(store.owned());
+  const std::size_t entries = pairs.first.size();
+  for (std::size_t p = 0; p < entries; ++p) {
+    if (is_zero(pair_values_, entries, p)) continue;
+    const LocalIndex i = pairs.first[p], j = pairs.second[p];
+    const GlobalId a = id_of(store, i), b = id_of(store, j);
+    if (j < owned_ && b > a) {
+      baggage_.add(j, a, &pair_values_[p], entries, signs_.data());
+    } else {
+      baggage_.add(i, b, &pair_values_[p], entries, the_same_.data());
+    }
+  }
+  end_pick_up(walls);
 }
 
 void ContactMemory::lay_down(const particles::Store& store, const PairList& pairs, const WallList& walls) {
@@ -76,10 +98,10 @@ void ContactMemory::lay_down(const particles::Store& store, const PairList& pair
   for (std::size_t p = 0; p < entries; ++p) {
     const LocalIndex i = pairs.first[p], j = pairs.second[p];
     const GlobalId a = store.ids()[static_cast<std::size_t>(i)], b = store.ids()[static_cast<std::size_t>(j)];
-    if (j >= owned_ || a > b) {
-      if (const double* found = baggage_.find(i, b)) put(pair_values_, entries, p, found, the_same_);
-    } else if (const double* found = baggage_.find(j, a)) {
-      put(pair_values_, entries, p, found, signs_);
+    if (const double* by_first = baggage_.find(i, b)) {
+      put(pair_values_, entries, p, by_first, the_same_);
+    } else if (const double* by_second = j < owned_ ? baggage_.find(j, a) : nullptr) {
+      put(pair_values_, entries, p, by_second, signs_);
     }
   }
   for (std::size_t w = 0; w < contacts; ++w) {

@@ -46,9 +46,13 @@ class ContactMemory {
   [[nodiscard]] const double* of_walls() const noexcept { return wall_values_.data(); }
 
   /// From the lists, which were built for `store` as it is (particles may have been appended and ghosts dropped), into
-  /// the baggage, unless it is there. `destination`: the rank each owned particle is about to go to, empty if all stay.
+  /// the baggage, unless it is there. Two particles' contact is held by the first, whose items then lie together.
+  /// `destination`: the rank each owned particle is about to go to, empty if all stay; a pair that parts is held by
+  /// both.
   void pick_up(const particles::Store& store, const PairList& pairs, const WallList& walls,
                std::span<const Rank> destination = {});
+  /// The same, held by the higher id.
+  void pick_up_by_id(const particles::Store& store, const PairList& pairs, const WallList& walls);
   /// From the baggage to new lists.
   void lay_down(const particles::Store& store, const PairList& pairs, const WallList& walls);
 
@@ -82,6 +86,8 @@ class ContactMemory {
     return slot < owned_ ? store.ids()[static_cast<std::size_t>(slot)]
                          : ghost_ids_[static_cast<std::size_t>(slot - owned_)];
   }
+  void begin_pick_up(LocalIndex owned);
+  void end_pick_up(const WallList& walls);
   [[nodiscard]] bool is_zero(const std::vector<double>& values, std::size_t entries, std::size_t entry) const noexcept;
 
   std::size_t doubles_;

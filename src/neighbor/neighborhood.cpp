@@ -53,14 +53,14 @@ void Neighborhood::ownership_changed() {
 }
 
 void Neighborhood::freeze(particles::Store& store, GlobalId below) {
-  memory_.pick_up(store, pairs_, walls_);
+  memory_.pick_up_by_id(store, pairs_, walls_);
   frozen_.take(store, below, memory_.in_use() ? &memory_.baggage() : nullptr);
   frozen_arranged_ = false;
   one_sided_ = memory_.in_use();
 }
 
 void Neighborhood::release(particles::Store& store) {
-  memory_.pick_up(store, pairs_, walls_);
+  memory_.pick_up_by_id(store, pairs_, walls_);
   frozen_.give_back(store, memory_.in_use() ? &memory_.baggage() : nullptr);
   one_sided_ = memory_.in_use();
   frozen_cells_ = {};
