@@ -54,7 +54,7 @@ expect 2 'random sequential addition placed' "${tiny[@]}" -o full -q --set layer
 must test ! -e full/quickstart.hdf
 # Particles too soft for their weight are pressed through the floor: the run names one and leaves no pack.
 expect 4 'layer 1, step [0-9]+, .* s: particle [0-9]+ overlaps .*, beyond 0.5 of it: position .* on rank [01]; it touches .*overlap .*; use dynamics.time_step = .* s or less .*, or particles.youngs_modulus = .* Pa or more' "${tiny[@]}" -o blown -q \
-  --set particles.youngs_modulus=1e4 --set jamming.gravity=2000
+  --set fidelity=paper --set particles.youngs_modulus=1e4 --set jamming.gravity=2000
 must test ! -e blown/quickstart.hdf
 
 # The tools in Python, without mpirun: what is missing is named, with Debian's package.
