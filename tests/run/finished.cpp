@@ -263,5 +263,28 @@ TEST_F(Folders, ASeriesThatIsNotWholeSaysSo) {
   }
 }
 
+// The one exception of doc/restart.md: sums of implicit steps follow the lists, which a restart makes anew.
+TEST_F(Folders, AnImplicitRunGoesOnToItsTolerance) {
+  changes_ = {"dynamics.theta=0.5", "contact.regularisation=viscous", "contact.slip_time=1e-3",
+              "layers.velocity=[0.0,0.0,-3.0]"};
+  EXPECT_EQ(make(options()), ExitCode::done) << words_;
+  const pack::PackRows whole = pack::read_pack(file(".hdf").string());
+  for (const std::int64_t stop : {60, 150}) {
+    Options early = options();
+    early.force = true;
+    early.max_steps = stop;
+    EXPECT_EQ(make(early), ExitCode::stopped_early) << words_;
+    EXPECT_EQ(make(options("auto")), ExitCode::done) << words_;
+    const pack::PackRows again = pack::read_pack(file(".hdf").string());
+    ASSERT_EQ(again.id, whole.id);
+    EXPECT_EQ(again.radius, whole.radius);
+    for (std::size_t k = 0; k < whole.id.size(); ++k) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_NEAR(again.position[k][a], whole.position[k][a], 1e-9 * whole.radius[k]) << k;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace packmpi::run
