@@ -19,12 +19,12 @@ struct PackOptions {
 /// What came of it; the same on every rank.
 struct PackResult {
   int code = 0;       ///< exit code of the program: 0 done, 3 a target was missed, others: no pack
-  std::string error;  ///< one line, if there is no pack
+  std::string error;  ///< one line: why there is no pack, or which targets it missed and what to change; else empty
   std::string file;   ///< path of the pack file (doc/file_format.md)
   std::int64_t particles = 0;
   double height = 0.0;        ///< [m]
   double phi = 0.0;           ///< solid fraction below the target height (CC16 eq. 22)
-  double phi_bulk = 0.0;      ///< solid fraction between 0.2 and 0.8 of that height
+  double phi_bulk = 0.0;      ///< solid fraction of the bulk (doc/theory.md, "Solid fraction")
   double coordination = 0.0;  ///< mean touching particles
 };
 

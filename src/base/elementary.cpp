@@ -32,6 +32,12 @@ double exponential(double x) noexcept {
   return std::ldexp(series, static_cast<int>(k));
 }
 
+double cosine(double x) noexcept {
+  double series = 1.0;
+  for (int n = 24; n >= 2; n -= 2) series = 1.0 - series * (x * x) / (n * (n - 1));
+  return series;
+}
+
 double power(double base, double exponent) noexcept { return exponential(exponent * logarithm(base)); }
 
 double sine(double x) noexcept {

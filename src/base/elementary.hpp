@@ -13,6 +13,8 @@ namespace packmpi::elementary {
 [[nodiscard]] double power(double base, double exponent) noexcept;
 /// sin x for x in [0, pi].
 [[nodiscard]] double sine(double x) noexcept;
+/// cos x for x in [0, pi/2]; the absolute error is a few 1e-16.
+[[nodiscard]] double cosine(double x) noexcept;
 /// arcsin x for x in [0, 1].
 [[nodiscard]] double arcsine(double x) noexcept;
 /// erfc x, the complementary error function, for finite x.

@@ -16,6 +16,7 @@
 #include "disk/text_file.hpp"
 #include "forecast/estimate.hpp"
 #include "input/fidelity.hpp"
+#include "input/restitution.hpp"
 #include "input/starter.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
@@ -30,6 +31,7 @@
 namespace packmpi::cli {
 namespace {
 
+/// On rank 0.
 void warn_of_step(const scene::Scene& scene) {
   const double safe = scene::safe_time_step(scene.in, scene.sizes);
   if (scene.time_step > safe) {
@@ -37,6 +39,19 @@ void warn_of_step(const scene::Scene& scene) {
         "time step {:g} s is beyond eq. (23) for the smallest particles ({:.3g} s), though not for the mean",
         scene.time_step, safe));
   }
+}
+
+/// On rank 0.
+void warn_of_softness(const scene::Scene& scene) {
+  const double modulus = scene.in.particles.youngs_modulus;
+  const double overlap = scene::expected_overlap(scene, modulus);
+  const double limit = scene.in.rest.mean_overlap;
+  if (overlap <= limit) return;
+  log::warn(
+      fmt::format("particles.youngs_modulus: under the bed's weight particles will overlap by about {:.2g} radii "
+                  "in the mean, beyond rest.mean_overlap = {:g}: the run is going to end with code 3; {:.1e} Pa "
+                  "or more would do",
+                  overlap, limit, scene::modulus_for(scene, limit, modulus)));
 }
 
 // `packmpi check`: the scene as it will be used, and what follows from it.
@@ -50,6 +65,12 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
+    const double modulus = scene.in.particles.youngs_modulus;
+    words += fmt::format("# mean overlap at rest about {:.2g} radii; 1 % would be at a modulus of {:.1e} Pa\n",
+                         scene::expected_overlap(scene, modulus), scene::modulus_for(scene, 0.01, modulus));
+    words += fmt::format("# restitution {:.4f} of two particles (damping_ratio {:.4g})\n",
+                         input::restitution_of(scene.in.contact.damping_ratio, scene.in.contact.tension_cutoff),
+                         scene.in.contact.damping_ratio);
     words +=
         fmt::format("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
     words += fmt::format("# fidelity = \"{}\":\n", scene.in.fidelity);
@@ -110,7 +131,10 @@ int use_scene(const comm::Comm& comm, const Request& request) {
   expect_memory(forecast::memory_a_rank(scene, comm.size()));
   if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
     return run::make_ensemble(comm, in, request.run);
-  warn_of_step(scene);
+  if (comm.rank() == 0) {
+    warn_of_step(scene);
+    warn_of_softness(scene);
+  }
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
 }
 

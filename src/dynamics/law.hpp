@@ -24,7 +24,8 @@ struct Law {
   LawConstants wall;    ///< r* = r_i, m* = m_i; rigid: E* = E/(1 - nu^2); material: as a pair
   double mass_factor;   ///< 3 / (4 pi rho): 1/m = mass_factor * k^3, k = 1/r
   double spin_slip;     ///< 1: slip at the contact point includes spin; 0: centre velocities only (literal eq. 14)
-  double slip_rate;     ///< 1/time_step ("stop"), 1/slip_time ("viscous"), or a huge number ("none") [1/s]
+  double slip_rate;     ///< 1/time_step ("stop"), a third of it ("shared"), 1/slip_time ("viscous"), or a huge number
+                        ///< ("none") [1/s]
   double slip_mass;     ///< m_t / m*: 2/7 with rotation and contact velocities, else 1
   double lowest_force;  ///< 0 with the tension cut-off, else -infinity [N]
 };

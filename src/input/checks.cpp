@@ -302,7 +302,7 @@ void check_theta(const Case& scene) {
   }
   if (scene.in.contact.regularisation == Regularisation::none) {
     scene.refuse("contact.regularisation",
-                 "friction that jumps with the slip has no derivative for the implicit scheme; use \"stop\" or "
+                 "friction that jumps with the slip has no derivative for the implicit scheme; use \"shared\" or "
                  "\"viscous\", or dynamics.theta = 0");
   }
 }

@@ -212,7 +212,10 @@ std::string downward(const Input& in, double speed) {
 
 std::vector<PresetValue> preset(const Input& in) {
   if (in.fidelity == "paper") {
-    return {{"layers.duration", "1.0"}, {"dynamics.time_step", "1e-4"}, {"dynamics.window", "0"}};
+    return {{"layers.duration", "1.0"},     {"dynamics.time_step", "1e-4"},
+            {"dynamics.window", "0"},       {"contact.regularisation", "\"stop\""},
+            {"rest.unbalanced_force", "1"}, {"rest.kinetic_energy", "0.1"},
+            {"rest.support", "0.2"},        {"rest.wait", "0"}};
   }
   const Protocol protocol = remembers(in) ? with_memory(in) : (is_draft(in) ? draft(in) : balanced(in));
   std::vector<PresetValue> values{{"layers.duration", rounded(protocol.duration)},

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ enum class Interpolation { log, linear };
 enum class HeightRule { surface, highest };
 enum class FrictionVelocity { contact, centre };
 enum class Tangential { sliding, mindlin };
-enum class Regularisation { stop, viscous, none };
+enum class Regularisation { stop, shared, viscous, none };
 enum class WallStiffness { rigid, material };
 enum class StopRule { duration, settled };
 enum class Decomposition { slab, pencil, metis };
@@ -74,9 +75,10 @@ struct Jamming {
 };
 
 struct Contact {
-  double damping_ratio = 0.0;  ///< [-] xi
-  double friction = 0.0;       ///< [-] mu_d
-  double wall_friction = 0.0;  ///< [-]
+  double damping_ratio = 0.0;         ///< [-] xi
+  std::optional<double> restitution;  ///< [-] the other way to say it: damping_ratio has its value; none: "auto"
+  double friction = 0.0;              ///< [-] mu_d
+  double wall_friction = 0.0;         ///< [-]
   Tangential tangential = Tangential::sliding;
   double rolling_friction = 0.0;   ///< [-] mu_r
   double twisting_friction = 0.0;  ///< [-] mu_t
@@ -106,6 +108,16 @@ struct Dynamics {
   double settled_hold = 0.0;                                              ///< [s] for which all must hold
   int window = 0;                                                         ///< newest layers that move; 0: all
   std::optional<double> relaxation;                                       ///< [s] of the final stage; none: "auto"
+};
+
+/// At which a pack is at rest; beyond one of them the run has missed a target. See observe::Rest. Infinite: not asked.
+struct Rest {
+  double unbalanced_force = std::numeric_limits<double>::infinity();  ///< [-]
+  double kinetic_energy = std::numeric_limits<double>::infinity();    ///< [-] of m g d
+  double support = std::numeric_limits<double>::infinity();           ///< [-] its distance from 1
+  double mean_overlap = std::numeric_limits<double>::infinity();      ///< [-] of a radius
+  double worst_overlap = std::numeric_limits<double>::infinity();     ///< [-] of a radius
+  std::optional<double> wait = 0.0;  ///< [s] that the final stage goes on at most until it is; none: "auto"
 };
 
 struct Parallel {
@@ -145,6 +157,7 @@ struct Input {
   Drag drag;
   std::optional<NearField> near_field;  ///< none: off
   Dynamics dynamics;
+  Rest rest;
   Parallel parallel;
   Ensemble ensemble;
   Checkpoint checkpoint;

@@ -224,6 +224,8 @@ std::vector<Key> force_keys() {
          "The jamming force of the paper: a downward acceleration, usually below 9.81 to keep impacts soft."),
     real("contact.damping_ratio", at(contact, &Contact::damping_ratio), plain, at_least(0), "0.1",
          "Fraction xi of critical damping of the normal contact; restitution depends on it alone. Beyond 1 the step must be smaller."),
+    real("contact.restitution", at(contact, &Contact::restitution), plain, Range{0, 1, true, false}, "auto",
+         "The other way to say damping: coefficient of restitution of two particles, at any speed. \"auto\": what damping_ratio gives. Not both."),
     real("contact.friction", at(contact, &Contact::friction), plain, at_least(0), "0.2",
          "Coefficient mu_d of sliding friction between particles."),
     real("contact.wall_friction", at(contact, &Contact::wall_friction), plain, at_least(0), "=contact.friction",
@@ -236,8 +238,9 @@ std::vector<Key> force_keys() {
          "Coefficient mu_t of the resistance to spinning about the normal: the torque is at most mu_t f_n r*. 0: none.")),
     word("contact.friction_velocity", at(contact, &Contact::friction_velocity), "contact",
          "Slip is measured at the contact point, spin included, or between the centres, as printed in the paper's eq. (14)."),
-    when(sliding, word("contact.regularisation", at(contact, &Contact::regularisation), "stop",
-         "Friction at small slip: \"stop\" ends the slip within one step; \"viscous\" within slip_time; \"none\" is the literal law.")),
+    when(sliding, word("contact.regularisation", at(contact, &Contact::regularisation), "shared",
+         "Friction at small slip: \"shared\" ends the slip of a contact within three steps, so that a particle's contacts together do not over-correct; "
+         "\"stop\" within one (the paper's protocol; heats tall and rough beds); \"viscous\" within slip_time; \"none\" is the literal law.")),
     when(viscous, real("contact.slip_time", at(contact, &Contact::slip_time), time, above(0), mandatory,
          "Time in which friction may end a slip; at least two time steps.")),
     word("contact.tension_cutoff", at(contact, &Contact::tension_cutoff), "true",
@@ -290,6 +293,24 @@ std::vector<Key> dynamics_keys() {
   };
 }
 
+std::vector<Key> rest_keys() {
+  const auto rest = &Input::rest;
+  return {
+    real("rest.unbalanced_force", at(rest, &Rest::unbalanced_force), plain, above(0), "0.05",
+         "A pack is at rest if the mean net force on a particle is below this times the mean contact force (unbalanced force ratio) ..."),
+    real("rest.kinetic_energy", at(rest, &Rest::kinetic_energy), plain, above(0), "1e-4",
+         "... the mean kinetic energy of a particle below this times m g d, d being the mean diameter ..."),
+    real("rest.support", at(rest, &Rest::support), plain, above(0), "0.02",
+         "... and the vertical force of floor and walls differs from the weight by less than this times the weight. Any of these limits from 1e9 on is none."),
+    real("rest.mean_overlap", at(rest, &Rest::mean_overlap), ratio, above(0), "0.01",
+         "Limit of the mean overlap of touching particles, over the smaller radius."),
+    real("rest.worst_overlap", at(rest, &Rest::worst_overlap), ratio, above(0), "0.05",
+         "Limit of the deepest overlap, of two particles or with a wall, over the smaller radius."),
+    real("rest.wait", at(rest, &Rest::wait), time, at_least(0), "auto",
+         "The final stage goes on until the first three hold, but for so long at most; \"auto\": ten falls through H_d. 0: it does not."),
+  };
+}
+
 std::vector<Key> program_keys() {
   return {
     word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
@@ -313,7 +334,7 @@ const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all;
     for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(),
-                             force_keys(), near_field_keys(), dynamics_keys(), program_keys()}) {
+                             force_keys(), near_field_keys(), dynamics_keys(), rest_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

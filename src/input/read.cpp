@@ -13,6 +13,7 @@
 #include "input/document.hpp"
 #include "input/fidelity.hpp"
 #include "input/keys.hpp"
+#include "input/restitution.hpp"
 #include "input/values.hpp"
 
 namespace packmpi::input {
@@ -181,6 +182,18 @@ void take_curve(const Document& document, const std::optional<CurveFile>& file, 
   radius.diameter_curve_file.clear();
 }
 
+/// The damping ratio that a restitution stands for. A scene that was written with every default filled in has both.
+void take_restitution(const Document& document, Contact& contact) {
+  if (!contact.restitution) return;
+  const double damping = damping_of(*contact.restitution, contact.tension_cutoff);
+  if (document.find("contact.damping_ratio") != nullptr && contact.damping_ratio != damping) {
+    fail(document.place("contact.restitution"), "contact.restitution",
+         fmt::format("there is a damping_ratio of {:g}, too, of which it would be {:.4g}; remove one of them",
+                     contact.damping_ratio, restitution_of(contact.damping_ratio, contact.tension_cutoff)));
+  }
+  contact.damping_ratio = damping;
+}
+
 }  // namespace
 
 std::optional<CurveFile> named_curve(const std::string& text, const std::string& path, const Overrides& overrides) {
@@ -204,6 +217,7 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
   take_curve(document, curve, in.particles.radius);
+  take_restitution(document, in.contact);
   check_radii(in, document);
   apply_preset(document, in);
   check(in, document);

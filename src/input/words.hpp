@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 2> words_of<FrictionVelocity>{"con
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Tangential>{"sliding", "mindlin"};
 template <>
-inline constexpr std::array<std::string_view, 3> words_of<Regularisation>{"stop", "viscous", "none"};
+inline constexpr std::array<std::string_view, 4> words_of<Regularisation>{"stop", "shared", "viscous", "none"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<WallStiffness>{"rigid", "material"};
 template <>

@@ -215,7 +215,7 @@ void Halo::share(std::span<std::int64_t> values) const {
     part.graph->begin(MPI_INT64_T, out.data(), in.data());
     part.graph->end(MPI_INT64_T, out.data(), in.data());
     for (std::size_t k = 0; k < in.size(); ++k) values[static_cast<std::size_t>(part.arrival_slot[k])] = in[k];
-    comm_->count(comm::Purpose::ghosts, {part.messages, static_cast<std::int64_t>(out.size() * sizeof(std::int64_t))});
+    comm_->count(comm::Purpose::other, {part.messages, static_cast<std::int64_t>(out.size() * sizeof(std::int64_t))});
   }
 }
 

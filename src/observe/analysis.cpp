@@ -4,6 +4,12 @@
 
 namespace packmpi::observe {
 
+Specimen specimen_of(const comm::Comm& comm, const scene::Scene& scene, const particles::Store& store,
+                     const neighbor::Neighborhood& neighborhood, double range) {
+  const double surface = surface_height(comm, store, scene);
+  return {comm, scene, store, neighborhood, range, surface, bulk_of(scene, surface)};
+}
+
 Analysis analyse(const Specimen& pack) {
   Analysis a;
   a.particles = pack.comm.sum(std::int64_t{pack.store.owned()});
@@ -12,7 +18,7 @@ Analysis analyse(const Specimen& pack) {
   for (int axis = 0; axis < pack.scene.box.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
   a.segregation = segregation(pack);
   a.pairs = pair_distribution(pack);
-  a.network = network(pack);
+  a.network = network(pack.comm, pack.store, pack.scene, pack.neighborhood);
   a.forces = forces(pack);
   a.floor_force = floor_force(pack.comm, pack.store, pack.scene, pack.neighborhood.walls());
   a.weight = motion(pack.comm, pack.store, pack.scene).mass * pack.scene.in.jamming.gravity;

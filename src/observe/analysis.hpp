@@ -7,6 +7,8 @@
 
 #include "comm/comm.hpp"
 #include "neighbor/neighborhood.hpp"
+#include "observe/measure.hpp"
+#include "observe/rest.hpp"
 #include "observe/size_match.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
@@ -26,11 +28,14 @@ struct Specimen {
   const scene::Scene& scene;
   const particles::Store& store;
   const neighbor::Neighborhood& neighborhood;
-  double range;  ///< [m] of the near pairs
+  double range;    ///< [m] of the near pairs
+  double surface;  ///< [m] surface_height()
+  Bulk bulk;       ///< measures "of the bulk" take the particles whose centres are there
 };
 
-/// The bulk: heights between 0.2 H_d and 0.8 H_d. Measures "of the bulk" take the particles whose centres are there.
-[[nodiscard]] bool in_bulk(const scene::Scene& scene, double height);
+/// Collective.
+[[nodiscard]] Specimen specimen_of(const comm::Comm& comm, const scene::Scene& scene, const particles::Store& store,
+                                   const neighbor::Neighborhood& neighborhood, double range);
 
 /// Solid fraction in slabs a quarter of the mean diameter thick: along the vertical of the whole pack, exact; along a
 /// lateral axis of the bulk, whose cut particles count as a whole. Collective.
@@ -51,16 +56,6 @@ struct PairDistribution {
   std::int64_t centres = 0;  ///< 0: the pack is too small, and g is empty
 };
 [[nodiscard]] PairDistribution pair_distribution(const Specimen& pack);
-
-/// The contact network. Under gravity a particle with fewer than dimension contacts (walls count) is not held; without
-/// it others may not be, either, and so on. Collective.
-struct Network {
-  double coordination = 0.0;       ///< contacts with particles, over all particles
-  double loose = 0.0;              ///< share with fewer than dimension contacts
-  double rattlers = 0.0;           ///< share that is not held, recursively
-  double held_coordination = 0.0;  ///< contacts between held particles, over those
-};
-[[nodiscard]] Network network(const Specimen& pack);
 
 using Tensor = std::array<std::array<double, 3>, 3>;  ///< rows; z is 0 in 2D
 

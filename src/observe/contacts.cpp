@@ -45,20 +45,15 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   result.of_particle.assign(static_cast<std::size_t>(store.owned()), 0);
   const PairSums sums = count_pairs(store, scene.box, pairs, frozen_below, result.of_particle);
 
-  std::vector<std::int32_t> with_walls = result.of_particle;
   double deepest = 0.0;
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
     const double depth = wall_penetration(store, scene.box, i, walls.wall[w]);
     if (!(depth > 0.0)) continue;
-    ++with_walls[static_cast<std::size_t>(i)];
     deepest = std::max(deepest, depth / store.radius(i));
   }
-  const int needed = scene.box.dimension + 1;  // fewer cannot hold a particle
-  const auto loose = std::count_if(with_walls.begin(), with_walls.end(), [&](std::int32_t n) { return n < needed; });
-
-  std::array<std::int64_t, 4> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
-                                     loose, sums.ends};
+  std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
+                                     sums.ends};
   comm.sum(counts);
   std::array<double, 2> maxima{sums.largest, deepest};
   comm.max(maxima);
@@ -66,8 +61,7 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   const auto particles = static_cast<double>(std::max<std::int64_t>(counts[0], 1));
   result.pairs = counts[1];
   result.pairs_here = std::ssize(sums.overlaps);
-  result.coordination = static_cast<double>(counts[3]) / particles;
-  result.rattlers = static_cast<double>(counts[2]) / particles;
+  result.coordination = static_cast<double>(counts[2]) / particles;
   result.mean_overlap = counts[1] > 0 ? total_overlap / static_cast<double>(counts[1]) : 0.0;
   result.max_overlap = maxima[0];
   result.max_wall_penetration = maxima[1];

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "geometry/volume.hpp"
@@ -5,12 +6,17 @@
 
 namespace packmpi::observe {
 
-Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
+Bulk bulk_of(const scene::Scene& scene, double surface) {
+  constexpr double low = 0.2, high = 0.8;
+  const double wanted = scene.box.height();
+  const double height = surface < high * wanted ? surface : wanted;
+  return {low * height, high * height};
+}
+
+Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, const Bulk& bulk) {
   const int dimension = scene.box.dimension;
   const auto vertical = static_cast<std::size_t>(scene.box.vertical());
   const double height = scene.box.height();
-  const double low = 0.2 * height;
-  const double high = 0.8 * height;
 
   const auto count = static_cast<std::size_t>(store.owned());
   std::array<std::vector<double>, 3> solid{std::vector<double>(count), std::vector<double>(count),
@@ -20,12 +26,13 @@ Density density(const comm::Comm& comm, const particles::Store& store, const sce
     const double r = store.radius(i);
     const auto k = static_cast<std::size_t>(i);
     solid[0][k] = geometry::volume_below(dimension, r, centre, height);
-    solid[1][k] = geometry::volume_below(dimension, r, centre, low);
-    solid[2][k] = geometry::volume_below(dimension, r, centre, high);
+    solid[1][k] = geometry::volume_below(dimension, r, centre, bulk.low);
+    solid[2][k] = geometry::volume_below(dimension, r, centre, bulk.high);
   }
   const std::vector<double> sums = comm::exact_sums(comm, solid);
-  const double area = scene.box.floor_area();
-  return {.phi = sums[0] / (area * height), .phi_bulk = (sums[2] - sums[1]) / (area * (high - low))};
+  const double volume = scene.box.volume_between(bulk.low, bulk.high);
+  return {.phi = sums[0] / scene.box.volume_between(0.0, height),
+          .phi_bulk = volume > 0.0 ? (sums[2] - sums[1]) / volume : 0.0};
 }
 
 }  // namespace packmpi::observe

@@ -50,7 +50,7 @@ LocalDensity local_density(const Specimen& pack) {
   std::vector<std::vector<double>> terms(2);
   std::vector<std::int64_t> counts(102, 0);  // bins of width, then left out
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
-    if (!in_bulk(pack.scene, pack.store.position(i)[vertical])) continue;
+    if (!pack.bulk.has(pack.store.position(i)[vertical])) continue;
     const std::optional<double> cell = cell_volume(pack, i, around.of(i));
     if (!cell) {
       ++counts.back();

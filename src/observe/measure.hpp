@@ -25,13 +25,22 @@ namespace packmpi::observe {
 [[nodiscard]] double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
                                     const scene::Scene& scene, std::int64_t most_stored = std::int64_t{1} << 24);
 
+/// The bulk of a bed: heights [m] between 0.2 and 0.8 of H_d; of a bed that does not reach 0.8 H_d, of its own surface.
+struct Bulk {
+  double low = 0.0, high = 0.0;
+  [[nodiscard]] bool has(double height) const noexcept { return height >= low && height < high; }
+  [[nodiscard]] double depth() const noexcept { return high - low; }
+};
+/// Of a bed with this surface_height() [m]. Local.
+[[nodiscard]] Bulk bulk_of(const scene::Scene& scene, double surface);
+
 /// Solid fractions (CC16 eq. 22).
 struct Density {
   double phi;       ///< below H_d
-  double phi_bulk;  ///< between 0.2 H_d and 0.8 H_d
+  double phi_bulk;  ///< of the bulk; 0 if that is empty
 };
-[[nodiscard]] Density density(const comm::Comm& comm, const particles::Store& store,
-                              const scene::Scene& scene);  ///< collective
+[[nodiscard]] Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                              const Bulk& bulk);  ///< collective
 
 /// Energy and motion of all particles. Collective.
 struct Motion {
@@ -76,8 +85,7 @@ struct Contacts {
   std::int64_t pairs = 0;                 ///< touching pairs, over all ranks
   std::int64_t pairs_here = 0;            ///< of them, counted by this rank; each pair by one
   double coordination = 0.0;              ///< mean of of_particle over all ranks
-  double rattlers = 0.0;      ///< share of particles with fewer than dimension + 1 contacts (walls counted here)
-  double mean_overlap = 0.0;  ///< over touching pairs, overlap / smaller radius
+  double mean_overlap = 0.0;              ///< over touching pairs, overlap / smaller radius
   double max_overlap = 0.0;
   double max_wall_penetration = 0.0;  ///< penetration / radius
 };

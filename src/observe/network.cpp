@@ -1,130 +1,98 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <vector>
 
-#include "observe/analysis.hpp"
-#include "observe/measure.hpp"
+#include "observe/rest.hpp"
 #include "observe/touch.hpp"
 
 namespace packmpi::observe {
 namespace {
 
-// Touching pairs of slots: a pair across a rank border is on both ranks, its owned end first.
-std::vector<std::array<LocalIndex, 2>> touching(const Specimen& pack) {
-  std::vector<std::array<LocalIndex, 2>> found;
-  const neighbor::PairList& pairs = pack.neighborhood.pairs();
-  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
-    if (touch(pack.store, pack.scene.box, pairs.first[p], pairs.second[p]).overlap > 0.0) {
-      found.push_back({pairs.first[p], pairs.second[p]});
+/// Who holds whom, particles taken away one round after another.
+class Holding {
+ public:
+  Holding(const particles::Store& store, const geometry::Container& box, const neighbor::Neighborhood& neighborhood)
+      : neighborhood_(&neighborhood),
+        held_(static_cast<std::size_t>(store.total()), 1),
+        of_particle_(static_cast<std::size_t>(store.owned())),
+        of_walls_(of_particle_.size(), 0) {
+    const neighbor::PairList& pairs = neighborhood.pairs();
+    for (std::size_t p = 0; p < pairs.first.size(); ++p) {
+      const auto i = static_cast<std::size_t>(pairs.first[p]), j = static_cast<std::size_t>(pairs.second[p]);
+      if (touch(store, box, pairs.first[p], pairs.second[p]).overlap > 0.0) touching_.push_back({i, j});
+    }
+    const neighbor::WallList& walls = neighborhood.walls();
+    for (std::size_t w = 0; w < walls.particle.size(); ++w) {
+      const LocalIndex i = walls.particle[w];
+      if (wall_penetration(store, box, i, walls.wall[w]) > 0.0) ++of_walls_[static_cast<std::size_t>(i)];
+    }
+    count();
+  }
+
+  /// Owned particles, held and with fewer than `needed` contacts, and contacts of the held ones with each other.
+  struct Counts {
+    std::int64_t held = 0, loose = 0, contacts = 0;
+  };
+  [[nodiscard]] Counts counts(int needed) const {
+    Counts sums;
+    for (std::size_t i = 0; i < of_particle_.size(); ++i) {
+      if (held_[i] == 0) continue;
+      ++sums.held;
+      sums.contacts += of_particle_[i];
+      if (is_loose(i, needed)) ++sums.loose;
+    }
+    return sums;
+  }
+
+  /// Collective. Takes the loose ones away.
+  void release(int needed) {
+    for (std::size_t i = 0; i < of_particle_.size(); ++i) {
+      if (held_[i] != 0 && is_loose(i, needed)) held_[i] = 0;
+    }
+    neighborhood_->share(std::span(held_));
+    count();
+  }
+
+ private:
+  [[nodiscard]] bool is_loose(std::size_t i, int needed) const { return of_particle_[i] + of_walls_[i] < needed; }
+
+  void count() {
+    std::ranges::fill(of_particle_, 0);
+    for (const auto& [i, j] : touching_) {
+      if (held_[i] == 0 || held_[j] == 0) continue;
+      ++of_particle_[i];
+      if (j < of_particle_.size()) ++of_particle_[j];
     }
   }
-  return found;
-}
 
-std::vector<int> wall_contacts(const Specimen& pack) {
-  std::vector<int> count(static_cast<std::size_t>(pack.store.owned()), 0);
-  const neighbor::WallList& walls = pack.neighborhood.walls();
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    if (wall_penetration(pack.store, pack.scene.box, i, walls.wall[w]) > 0.0) ++count[static_cast<std::size_t>(i)];
-  }
-  return count;
-}
+  const neighbor::Neighborhood* neighborhood_;
+  std::vector<std::array<std::size_t, 2>> touching_;  // slots; across a rank border on both ranks, the owned end first
+  std::vector<std::int64_t> held_;                    // of owned and ghosts: 0 once taken away
+  std::vector<std::int64_t> of_particle_, of_walls_;  // contacts of the owned
+};
 
 }  // namespace
 
-Network network(const Specimen& pack) {
-  const auto owned = static_cast<std::size_t>(pack.store.owned());
-  const auto contacts = touching(pack);
-  const std::vector<int> at_walls = wall_contacts(pack);
-  const int needed = pack.scene.box.dimension;  // gravity is one more
-  std::vector<std::int64_t> held(static_cast<std::size_t>(pack.store.total()), 1);
-  std::vector<std::int64_t> count(owned);
-  const auto recount = [&] {
-    std::ranges::fill(count, 0);
-    for (const auto& [i, j] : contacts) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      if (held[a] == 0 || held[b] == 0) continue;
-      ++count[a];
-      if (b < owned) ++count[b];
-    }
+Network network(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                const neighbor::Neighborhood& neighborhood) {
+  const int needed = scene.box.dimension + (scene.in.jamming.gravity > 0.0 ? 0 : 1);
+  Holding holding(store, scene.box, neighborhood);
+  const auto sums = [&] {
+    const Holding::Counts mine = holding.counts(needed);
+    std::array<std::int64_t, 3> all{mine.held, mine.loose, mine.contacts};
+    comm.sum(all);
+    return Holding::Counts{all[0], all[1], all[2]};
   };
-  const auto particles =
-      static_cast<double>(std::max<std::int64_t>(1, pack.comm.sum(std::int64_t{pack.store.owned()})));
-  Network result;
-  recount();
-  std::array<std::int64_t, 2> sums{};  // contacts, loose
-  for (std::size_t i = 0; i < owned; ++i) {
-    sums[0] += count[i];
-    sums[1] += count[i] + at_walls[i] < needed ? 1 : 0;
+  Holding::Counts now = sums();
+  const auto particles = static_cast<double>(std::max<std::int64_t>(now.held, 1));
+  Network result{.coordination = static_cast<double>(now.contacts) / particles,
+                 .loose = static_cast<double>(now.loose) / particles};
+  while (now.loose > 0) {  // ends: every round takes a particle away
+    holding.release(needed);
+    now = sums();
   }
-  pack.comm.sum(std::span(sums));
-  result.coordination = static_cast<double>(sums[0]) / particles;
-  result.loose = static_cast<double>(sums[1]) / particles;
-  for (std::int64_t released = 1; released > 0;) {  // ends: every turn but the last releases a particle
-    std::int64_t mine = 0;
-    for (std::size_t i = 0; i < owned; ++i) {
-      if (held[i] == 0 || count[i] + at_walls[i] >= needed) continue;
-      held[i] = 0;
-      ++mine;
-    }
-    released = pack.comm.sum(mine);
-    pack.neighborhood.share(std::span(held));
-    recount();
-  }
-  std::array<std::int64_t, 2> rest{};  // held, contacts between them
-  for (std::size_t i = 0; i < owned; ++i) {
-    rest[0] += held[i];
-    rest[1] += held[i] != 0 ? count[i] : 0;
-  }
-  pack.comm.sum(std::span(rest));
-  result.rattlers = 1.0 - static_cast<double>(rest[0]) / particles;
-  result.held_coordination = rest[0] > 0 ? static_cast<double>(rest[1]) / static_cast<double>(rest[0]) : 0.0;
-  return result;
-}
-
-Forces forces(const Specimen& pack) {
-  constexpr double width = 0.1, most = 8.0;    // of the mean force
-  std::vector<std::vector<double>> terms(19);  // fabric, stress, normal force
-  std::vector<double> normals;
-  for (const ContactForce& c :
-       contact_forces(pack.store, pack.scene, pack.neighborhood.pairs(), dynamics::stored_pairs(pack.neighborhood))) {
-    if (!in_bulk(pack.scene, c.middle[static_cast<std::size_t>(pack.scene.box.vertical())])) continue;
-    const Vec3& l = c.branch;
-    const double length = std::sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
-    double normal = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      normal -= c.force[a] * l[a] / length;
-      for (std::size_t b = 0; b < 3; ++b) {
-        terms[3 * a + b].push_back(l[a] * l[b] / (length * length));
-        terms[9 + 3 * a + b].push_back(-l[a] * c.force[b]);
-      }
-    }
-    terms[18].push_back(normal);
-    normals.push_back(normal);
-  }
-  const std::vector<double> sums = comm::exact_sums(pack.comm, terms);
-  Forces result;
-  result.contacts = pack.comm.sum(std::ssize(normals));
-  if (result.contacts == 0) return result;
-  const auto contacts = static_cast<double>(result.contacts);
-  const double volume = pack.scene.box.floor_area() * 0.6 * pack.scene.box.height();
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      result.fabric[a][b] = sums[3 * a + b] / contacts;
-      result.stress[a][b] = sums[9 + 3 * a + b] / volume;
-    }
-  }
-  result.mean_normal_force = sums[18] / contacts;
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(most / width), 0);
-  for (const double f : normals) {
-    const double share = f / result.mean_normal_force;
-    if (share >= 0.0 && share < most) ++counts[static_cast<std::size_t>(share / width)];
-  }
-  pack.comm.sum(std::span(counts));
-  result.distribution.width = width;
-  for (const std::int64_t count : counts) {
-    result.distribution.values.push_back(static_cast<double>(count) / (contacts * width));
-  }
+  result.rattlers = 1.0 - static_cast<double>(now.held) / particles;
+  if (now.held > 0) result.held_coordination = static_cast<double>(now.contacts) / static_cast<double>(now.held);
   return result;
 }
 

@@ -94,7 +94,7 @@ Order order(const Specimen& pack) {
   std::vector<std::vector<double>> terms(3);  // 2D: |psi|, its parts; 3D: q4, q6
   std::array<std::int64_t, 3> counts{};       // counted, fcc, hcp
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
-    if (!in_bulk(pack.scene, pack.store.position(i)[vertical])) continue;
+    if (!pack.bulk.has(pack.store.position(i)[vertical])) continue;
     const auto neighbours = around.of(i);
     const std::vector<Vec3> d = bonds(pack, i, neighbours);
     ++counts[0];

@@ -35,8 +35,8 @@ Interior interior_of(const Specimen& pack, double range) {
     in.low[a] = box.periodic[a] ? 0.0 : range;
     in.high[a] = box.periodic[a] ? box.size[a] : box.size[a] - range;
   }
-  in.low[v] = std::max(range, 0.2 * box.height());
-  in.high[v] = std::min(surface_height(pack.comm, pack.store, pack.scene) - range, 0.8 * box.height());
+  in.low[v] = std::max(range, pack.bulk.low);
+  in.high[v] = std::min(pack.surface - range, pack.bulk.high);
   return in;
 }
 

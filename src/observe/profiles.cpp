@@ -8,7 +8,6 @@
 namespace packmpi::observe {
 namespace {
 
-constexpr double low_bulk = 0.2, high_bulk = 0.8;  // of H_d
 constexpr double slabs_a_diameter = 4.0;
 constexpr double diameters_a_layer = 3.0;
 constexpr std::size_t most_slabs = 1 << 20;  // across a container; wider ones in one that is wider
@@ -18,11 +17,6 @@ std::size_t bins_in(double length, double width) {
 }
 
 }  // namespace
-
-bool in_bulk(const scene::Scene& scene, double height) {
-  const double asked = scene.box.height();
-  return height >= low_bulk * asked && height < high_bulk * asked;
-}
 
 Profile density_profile(const Specimen& pack, int axis) {
   const geometry::Container& box = pack.scene.box;
@@ -37,7 +31,7 @@ Profile density_profile(const Specimen& pack, int axis) {
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
-    if (!vertical && !in_bulk(pack.scene, x[static_cast<std::size_t>(box.vertical())])) continue;
+    if (!vertical && !pack.bulk.has(x[static_cast<std::size_t>(box.vertical())])) continue;
     const auto first = static_cast<std::ptrdiff_t>(std::floor((x[a] - r) / profile.width));
     const auto last = static_cast<std::ptrdiff_t>(std::floor((x[a] + r) / profile.width));
     const auto n = static_cast<std::ptrdiff_t>(bins);
@@ -51,8 +45,7 @@ Profile density_profile(const Specimen& pack, int axis) {
     }
   }
   profile.values = comm::exact_sums(pack.comm, terms);
-  const double section =
-      vertical ? box.floor_area() : box.floor_area() / box.size[a] * (high_bulk - low_bulk) * box.height();
+  const double section = vertical ? box.floor_area() : box.floor_area() / box.size[a] * pack.bulk.depth();
   for (double& value : profile.values) value /= section * profile.width;
   return profile;
 }

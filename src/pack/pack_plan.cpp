@@ -123,6 +123,16 @@ std::string list_units(const std::vector<disk::Field>& fields) {
   return text;
 }
 
+/// The measures of rest, each with its limit (see Criterion::asked).
+void write_rest(hid_t file, const report::RunRecord& record) {
+  const disk::h5::Handle group = disk::h5::create_group(file, "/summary/rest");
+  for (const report::Criterion& c : record.criteria) {
+    disk::h5::set_attribute(group.get(), c.name, c.value);
+    disk::h5::set_attribute(group.get(), fmt::format("{}_limit", c.name).c_str(), c.limit);
+  }
+  disk::h5::set_attribute(group.get(), "missed", report::missed_words(record, "\n"));
+}
+
 void write_summary(hid_t file, const report::RunRecord& record) {
   const disk::h5::Handle group = disk::h5::create_group(file, "/summary");
   std::vector<disk::Field> fields = report::target_fields(record);
@@ -130,6 +140,7 @@ void write_summary(hid_t file, const report::RunRecord& record) {
   disk::h5::set_attributes(group.get(), fields);
   disk::h5::set_attribute(group.get(), "units", list_units(fields));
   disk::h5::set_attributes(disk::h5::create_group(file, "/summary/audit").get(), report::audit_fields(record.audit));
+  write_rest(file, record);
   (void)disk::h5::create_group(file, "/summary/layers");
   for (const report::LayerColumn& column : report::layer_columns(record.layers)) {
     std::visit(

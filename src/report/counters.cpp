@@ -26,4 +26,10 @@ double moving_share(const RunRecord& record) {
   return static_cast<double>(moving->sum()) / static_cast<double>(moving->sum() + frozen->sum());
 }
 
+std::string missed_words(const RunRecord& record, std::string_view between) {
+  std::string words;
+  for (const std::string& target : record.missed) words.append(words.empty() ? "" : between).append(target);
+  return words;
+}
+
 }  // namespace packmpi::report

@@ -36,6 +36,14 @@ Json to_rows(const RunRecord& record) {
   return rows;
 }
 
+Json to_object(const std::vector<Criterion>& criteria) {
+  Json object = Json::object();
+  for (const Criterion& c : criteria) {
+    object[c.name] = {{"value", c.value}, {"target", c.target}, {"limit", c.limit}, {"met", c.met()}};
+  }
+  return object;
+}
+
 // Beyond so many ranks the file would be mostly these lists.
 constexpr std::size_t most_listed = 4096;
 
@@ -69,6 +77,8 @@ std::string to_json(const RunRecord& record) {
   root["achieved"] = to_object(achieved_fields(record));
   root["sizes"] = to_json(record.sizes);
   root["audit"] = to_object(audit_fields(record.audit));
+  root["rest"] = to_object(record.criteria);
+  root["missed"] = record.missed;
   root["layers"] = to_rows(record);
   root["counters"] = to_numbers(record.counters);
   root["costs"] = to_numbers(record.costs);

@@ -1,12 +1,16 @@
 /// What a run reports about itself: target versus achieved, per layer and in all; written to the pack, NAME.json and
 /// the screen.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/fnv.hpp"
 #include "base/types.hpp"
+#include "observe/measure.hpp"
+#include "observe/rest.hpp"
 #include "observe/size_match.hpp"
 
 namespace packmpi::report {
@@ -45,6 +49,18 @@ struct Audit {
   std::int64_t outside = 0;             ///< centres outside the container
 };
 
+/// A measure of rest and its limit.
+struct Criterion {
+  const char* name;         ///< as in [rest]
+  const char* words;        ///< for people
+  double value = 0.0;       ///< [-]
+  double limit = 0.0;       ///< of the value's distance from the target; see asked()
+  double target = 0.0;      ///< 0: the less the better
+  bool of_overlap = false;  ///< a matter of stiffness, not of time
+  [[nodiscard]] bool asked() const noexcept { return limit < 1e9; }  ///< a limit so far off is none
+  [[nodiscard]] bool met() const noexcept { return !asked() || std::abs(value - target) < limit; }
+};
+
 /// A number that every rank has its own of, rank after rank.
 struct RankNumbers {
   std::string name, unit;  ///< "" for counts
@@ -69,11 +85,10 @@ struct RunRecord {
   std::int64_t particles = 0;
   double height = 0.0, top = 0.0;  ///< [m]
   double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
-  double phi_bulk = 0.0;           ///< solid fraction between 0.2 H_d and 0.8 H_d
+  double phi_bulk = 0.0;           ///< solid fraction of the bulk
+  observe::Bulk bulk;              ///< [m] its bounds
   double compaction_rate = 0.0;    ///< d phi_bulk / dt at the end [1/s]
-  double coordination = 0.0;       ///< mean touching particles
-  double rattlers = 0.0;           ///< share of particles with fewer than dimension + 1 contacts
-  double mean_overlap = 0.0;       ///< mean over contacts of overlap / smaller radius
+  observe::Rest rest;              ///< how near to rest, and the contact network
   double kinetic_energy = 0.0;     ///< [J]
   double floor_force = 0.0;        ///< [N]
   double weight = 0.0;             ///< [N] m g of all particles
@@ -88,9 +103,11 @@ struct RunRecord {
   double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
   bool reached = false;                   ///< target height reached
   std::string stop_reason;
-  bool targets_met = false;  ///< run::targets_met()
+  bool targets_met = false;  ///< nothing is in `missed`
   std::vector<LayerRow> layers;
   Audit audit;
+  std::vector<Criterion> criteria;  ///< of rest
+  std::vector<std::string> missed;  ///< targets, a sentence each with what to change
   // how (not the same from run to run)
   int ranks = 1;
   std::string decomposition, version, git, compiler, architecture;
@@ -107,6 +124,8 @@ struct RunRecord {
   std::vector<RankNumbers> costs;     ///< times, memory
 };
 
+/// All that was missed, with `between` between; empty: nothing.
+[[nodiscard]] std::string missed_words(const RunRecord& record, std::string_view between);
 /// The numbers of that name, or null.
 [[nodiscard]] const RankNumbers* find(const std::vector<RankNumbers>& all, const std::string& name);
 /// Steps of moving particles over those of all, the frozen included, by the counters; 1 without.

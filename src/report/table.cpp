@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "report/report.hpp"
@@ -16,6 +17,11 @@ std::string number(std::int64_t value) { return fmt::format("{}", value); }
 
 void line(Buffer& out, std::string_view quantity, std::string_view target, std::string_view achieved) {
   fmt::format_to(std::back_inserter(out), "  {:<44} {:>22} {:>22}\n", quantity, target, achieved);
+}
+
+std::string limit_words(const Criterion& c) {
+  if (!c.asked()) return "";
+  return c.target == 0.0 ? fmt::format("< {:g}", c.limit) : fmt::format("{:g} +- {:g}", c.target, c.limit);
 }
 
 /// The middle column has targets only.
@@ -35,10 +41,10 @@ void compare(Buffer& out, const RunRecord& r) {
   if (r.target_min_radius < r.target_max_radius) {
     for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.target, size.achieved);
   }
-  line(out, "coordination number", "", number(r.coordination));
-  line(out, "rattlers, share", "", number(r.rattlers));
-  line(out, "overlap / smaller radius, mean", "", number(r.mean_overlap));
-  line(out, "overlap / smaller radius, worst", "", number(r.audit.worst_overlap));
+  line(out, "coordination number", "", number(r.rest.network.coordination));
+  line(out, "coordination number without rattlers", "", number(r.rest.network.held_coordination));
+  line(out, "rattlers, share", "", number(r.rest.network.rattlers));
+  for (const Criterion& c : r.criteria) line(out, c.words, limit_words(c), number(c.value));
   line(out, "wall penetration / radius, worst", "", number(r.audit.worst_wall_penetration));
   line(out, "force on the floor [N] (target: the weight)", number(r.weight), number(r.floor_force));
   line(out, "kinetic energy [J]", "", number(r.kinetic_energy));

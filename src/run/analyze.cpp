@@ -59,7 +59,8 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   take_share(slice.rows, bed.store);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
-  const observe::Analysis analysis = observe::analyse({comm, scene, bed.store, bed.neighborhood, range});
+  const observe::Analysis analysis =
+      observe::analyse(observe::specimen_of(comm, scene, bed.store, bed.neighborhood, range));
   const std::filesystem::path pack(path);
   disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
                    report::to_json(analysis, scene.box.dimension, seal));

@@ -5,7 +5,6 @@
 
 #include "base/log.hpp"
 #include "base/timer.hpp"
-#include "observe/measure.hpp"
 
 namespace packmpi::run {
 
@@ -53,11 +52,14 @@ double Bed::top() const {
   return std::max(observe::top(comm, store, scene), observe::top(comm, neighborhood.frozen(), scene));
 }
 
-double Bed::height() const {
-  if (scene.in.layers.height == input::HeightRule::highest) return top();
+double Bed::surface() const {
   const std::array<const particles::Store*, 2> all{&store, &neighborhood.frozen()};
   return observe::surface_height(comm, all, scene);
 }
+
+double Bed::height() const { return scene.in.layers.height == input::HeightRule::highest ? top() : surface(); }
+
+observe::Bulk Bed::bulk() const { return observe::bulk_of(scene, surface()); }
 
 void Bed::balance() {
   if (ownership.rebalance(neighborhood.column_counts(store))) {

@@ -6,6 +6,7 @@
 #include "comm/comm.hpp"
 #include "dynamics/stepper.hpp"
 #include "neighbor/neighborhood.hpp"
+#include "observe/measure.hpp"
 #include "pack/progress.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
@@ -43,8 +44,11 @@ struct Bed {
   void freeze_older();
   /// Brings everything frozen back into the store, at rest. Then rebuild. Every rank alike.
   void release();
-  [[nodiscard]] double top() const;     ///< [m] highest top, frozen or not. Collective
-  [[nodiscard]] double height() const;  ///< [m] of the bed by the scene's rule. Collective
+  [[nodiscard]] double top() const;      ///< [m] highest top, frozen or not. Collective
+  [[nodiscard]] double surface() const;  ///< [m] mean over columns of the highest top, frozen or not. Collective
+  [[nodiscard]] double height() const;   ///< [m] of the bed by the scene's rule. Collective
+
+  [[nodiscard]] observe::Bulk bulk() const;  ///< by its surface, frozen or not. Collective
 
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;

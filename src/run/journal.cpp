@@ -143,14 +143,13 @@ void Journal::layer_settled(const report::LayerRow& row) {
 
 void Journal::relaxation_started() { relaxing_ = true; }
 
-void Journal::relaxed(double height) {
+void Journal::relaxation_not_needed() { relaxing_ = false; }
+
+void Journal::relaxed(double height, double duration) {
   tell("relaxed",
        fmt::format("relaxation: all {} particles moved for {:.4g} s, height {:.4f} -> {:.4f} m", bed_.progress.count,
-                   bed_.scene.relaxation, height_, height),
-       {{"particles", bed_.progress.count},
-        {"duration", bed_.scene.relaxation},
-        {"height_before", height_},
-        {"height", height}});
+                   duration, height_, height),
+       {{"particles", bed_.progress.count}, {"duration", duration}, {"height_before", height_}, {"height", height}});
   height_ = height;
   relaxing_ = false;
 }

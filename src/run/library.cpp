@@ -42,7 +42,8 @@ PackResult make(const comm::Comm& comm, const run::Options& options) {
   result.height = record.height;
   result.phi = record.phi;
   result.phi_bulk = record.phi_bulk;
-  result.coordination = record.coordination;
+  result.coordination = record.rest.network.coordination;
+  result.error = report::missed_words(record, "; ");
   return result;
 }
 

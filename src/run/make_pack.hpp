@@ -11,10 +11,8 @@ namespace packmpi::run {
 /// (NAME.analysis.json, if asked for) into options.folder. Throws Error on all ranks: bad_input (existing outputs
 /// without --force; RSA cannot reach phi_0), numerical_failure, io_failure; bad_checkpoint (options.restart);
 /// stopped_early, with a checkpoint written (signals, limits, a STOP file). Checkpoints are removed once the pack is
-/// written. A pack that misses a target is written all the same: see RunRecord::reached and the audit.
+/// written. A pack that misses a target is written all the same: see RunRecord::missed. A bed whose energy grows from
+/// layer to layer is a numerical_failure.
 [[nodiscard]] report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
-
-/// Whether the targets are met: height reached, nothing lost, nothing outside, no deep overlap.
-[[nodiscard]] bool targets_met(const report::RunRecord& record);
 
 }  // namespace packmpi::run

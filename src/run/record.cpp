@@ -7,6 +7,7 @@
 #include "dynamics/kernel.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
+#include "run/judge.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -31,7 +32,9 @@ double target_sd(const scene::Scene& scene) {
   return std::sqrt(std::max(0.0, scene.sizes.curve().moment(2) - mean * mean));
 }
 
-void audit(const Bed& bed, const observe::Contacts& contacts, report::RunRecord& record) {
+void audit(const Bed& bed, report::RunRecord& record) {
+  const observe::Contacts contacts =
+      observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   const observe::Validity valid = observe::validity(bed.comm, bed.store, bed.scene);
   record.audit.expected = bed.progress.count;
   record.audit.found = valid.found;
@@ -65,15 +68,15 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.compiler = compiler();
   record.architecture = dynamics::kernel_architecture();
   record.petsc_options = comm::petsc_options_in_use();
+  record.criteria = judge(scene, {});  // their limits; the values come with the bed
   return record;
 }
 
 void measure_bed(const Bed& bed, report::RunRecord& record) {
   const comm::Comm& comm = bed.comm;
   const scene::Scene& scene = bed.scene;
-  const observe::Contacts contacts =
-      observe::contacts(comm, bed.store, scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
-  const observe::Density density = observe::density(comm, bed.store, scene);
+  const observe::Bulk bulk = bed.bulk();
+  const observe::Density density = observe::density(comm, bed.store, scene, bulk);
   const observe::Motion motion = observe::motion(comm, bed.store, scene);
   const observe::SizeStatistics sizes = observe::sizes(comm, bed.store);
   const pack::Progress& at = bed.progress;
@@ -89,9 +92,8 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.top = observe::top(comm, bed.store, scene);
   record.phi = density.phi;
   record.phi_bulk = density.phi_bulk;
-  record.coordination = contacts.coordination;
-  record.rattlers = contacts.rattlers;
-  record.mean_overlap = contacts.mean_overlap;
+  record.bulk = bulk;
+  record.rest = observe::rest(comm, bed.store, scene, bed.neighborhood);
   record.kinetic_energy = motion.kinetic_energy;
   record.floor_force = observe::floor_force(comm, bed.store, scene, bed.neighborhood.walls());
   record.weight = motion.mass * scene.in.jamming.gravity;
@@ -105,7 +107,10 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.duration = bed.time();
   record.particle_steps = at.particle_steps;
   record.bytes_per_particle = bed.bytes_per_particle();
-  audit(bed, contacts, record);
+  audit(bed, record);
+  record.criteria = judge(scene, record.rest);
+  record.missed = missed_targets(scene, record);
+  record.targets_met = record.missed.empty();
 }
 
 }  // namespace packmpi::run

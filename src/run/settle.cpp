@@ -8,12 +8,16 @@
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "observe/measure.hpp"
+#include "observe/rest.hpp"
+#include "run/judge.hpp"
 
 namespace packmpi::run {
 namespace {
 
 // Share of a part over which its compaction rate is measured.
 constexpr double rate_share = 0.1;
+// Looks whether the bed is at rest in the time that the final stage waits for it at most.
+constexpr int windows_a_wait = 50;
 // Looks at the criteria of stop = "settled" in the time for which they must hold.
 constexpr int looks_a_hold = 10;
 // 2^6 stairs of the hardening ramp: six square roots give the ratio.
@@ -30,6 +34,8 @@ struct Plan {
   std::int64_t log_every;   // steps between rows of the step log
   std::int64_t look_every;  // steps between looks at the criteria; 0: none
   std::int64_t rate_from;
+  std::int64_t wait;         // steps that it goes on at most until the bed is at rest; 0: it does not
+  std::int64_t wait_window;  // steps between looks whether it is
   std::vector<double> ramp;  // moduli; the last one from half the steps on
 
   [[nodiscard]] std::int64_t ramp_start(std::size_t stair) const {
@@ -40,8 +46,18 @@ struct Plan {
     while (stair > 0 && ramp_start(stair) > done) --stair;
     return ramp[stair];
   }
+  // Of the looks for rest that are due: the first after step `done`, and the last before it.
+  [[nodiscard]] std::int64_t window_end(std::int64_t done) const {
+    return std::min(steps + wait, steps + ((done - steps) / wait_window + 1) * wait_window);
+  }
+  [[nodiscard]] std::int64_t window_start(std::int64_t done) const {
+    return steps + (done - 1 - steps) / wait_window * wait_window;
+  }
+  [[nodiscard]] bool look_for_rest(std::int64_t done) const {
+    return done >= steps && (done - steps) % wait_window == 0;
+  }
   [[nodiscard]] std::int64_t next(std::int64_t done) const {
-    std::int64_t stop = std::min(steps, (done / log_every + 1) * log_every);
+    std::int64_t stop = std::min(done < steps ? steps : window_end(done), (done / log_every + 1) * log_every);
     if (look_every > 0) stop = std::min(stop, (done / look_every + 1) * look_every);
     if (done < rate_from) stop = std::min(stop, rate_from);
     for (std::size_t stair = 1; stair < ramp.size(); ++stair) {
@@ -55,12 +71,15 @@ Plan plan_of(const scene::Scene& scene, Part part) {
   const bool layer = part == Part::layer;
   const scene::Stage stage = layer ? scene.settling : scene.last();
   const double seconds = layer ? scene.in.layers.duration : scene.relaxation;
+  const double wait = layer ? 0.0 : scene.wait;
   const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : stage.time_step;
   Plan plan{.stage = stage,
-            .steps = steps_in(seconds, stage.time_step),
+            .steps = seconds > 0.0 ? steps_in(seconds, stage.time_step) : 0,
             .log_every = steps_in(interval, stage.time_step),
             .look_every = 0,
             .rate_from = 0,
+            .wait = wait > 0.0 ? steps_in(wait, stage.time_step) : 0,
+            .wait_window = steps_in(wait / windows_a_wait, stage.time_step),
             .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
   if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
     plan.look_every = steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
@@ -69,7 +88,7 @@ Plan plan_of(const scene::Scene& scene, Part part) {
   return plan;
 }
 
-double phi_of_moving(const Bed& bed) { return observe::density(bed.comm, bed.store, bed.scene).phi_bulk; }
+double phi_of_moving(const Bed& bed) { return observe::density(bed.comm, bed.store, bed.scene, bed.bulk()).phi_bulk; }
 
 // One of the criteria of rest: what it measures, and below what it is met.
 struct Criterion {
@@ -128,13 +147,32 @@ bool has_settled(Bed& bed, const Plan& plan) {
 
 Settled result(const Bed& bed, const Plan& plan, bool early) {
   const pack::PhaseProgress& now = bed.progress.now;
+  if (now.done == 0) return {};
   const double before = early ? now.phi_calm : now.phi_before;
-  const std::int64_t since = early ? now.calm_since : plan.rate_from;
+  const std::int64_t since = early                   ? now.calm_since
+                             : now.done > plan.steps ? plan.window_start(now.done)
+                                                     : plan.rate_from;
   const double time = static_cast<double>(now.done - since) * plan.stage.time_step;
   return {.steps = now.done,
           .seconds = static_cast<double>(now.done) * plan.stage.time_step,
           .compaction_rate = (phi_of_moving(bed) - before) / time,
           .early = early};
+}
+
+// Is the part over after now.done steps? Beyond its own steps, once the bed is at rest; that is looked at in
+// windows, from whose beginning the compaction rate counts.
+bool is_over(Bed& bed, const Plan& plan) {
+  pack::PhaseProgress& now = bed.progress.now;
+  if (now.done < plan.steps) return false;
+  if (now.done == plan.steps + plan.wait) return true;
+  if (!plan.look_for_rest(now.done)) return false;
+  const observe::Rest rest = observe::rest(bed.comm, bed.store, bed.scene, bed.neighborhood);
+  log::debug(
+      fmt::format("unbalanced force ratio {:.2e}, KE/(m g d) {:.2e}, support {:.4f} at step {} of the final stage",
+                  rest.unbalanced_force, rest.kinetic_energy, rest.support, now.done));
+  if (at_rest(judge(bed.scene, rest))) return true;
+  now.phi_before = phi_of_moving(bed);
+  return false;
 }
 
 }  // namespace
@@ -158,7 +196,8 @@ Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part) {
     now.mean_height = observe::motion(bed.comm, bed.store, bed.scene).mean_height;
   }
   bool early = false;
-  while (now.done < plan.steps && !early) {
+  bool over = is_over(bed, plan);
+  while (!over) {
     if (now.done == plan.rate_from) now.phi_before = phi_of_moving(bed);
     const std::int64_t next = std::min(plan.next(now.done), now.done + keeper.steps_to_look());
     bed.stepper.use({plan.stage.time_step, plan.modulus(now.done)});
@@ -166,8 +205,9 @@ Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part) {
     if (part == Part::relaxation) bed.progress.relaxation_steps += next - now.done;
     now.done = next;
     if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan);
-    if (next % plan.log_every == 0 || next == plan.steps || early) {
-      journal.moment(static_cast<double>(next) / static_cast<double>(plan.steps));
+    over = early || is_over(bed, plan);
+    if (next % plan.log_every == 0 || next == plan.steps || over) {
+      journal.moment(static_cast<double>(next) / static_cast<double>(std::max(next, plan.steps)));
     }
     if (!early) keeper.look();  // a part that is over goes on with what comes after it
   }

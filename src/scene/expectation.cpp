@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/volume.hpp"
+#include "input/time_step.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::scene {
@@ -82,6 +84,20 @@ double uneven_volumes(const Scene& scene) {
   return scene.sizes.curve().moment(2 * scene.box.dimension) / (mean * mean);
 }
 
+// How deep a pile without walls presses as much on its floor as this one does (Janssen 1895): lateral over vertical
+// stress times wall friction, on the walls there are.
+double pressing_height(const Scene& scene) {
+  constexpr double lateral = 0.5;  // share of the vertical stress
+  double walls_over_area = 0.0;    // [1/m]
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+    if (!scene.box.periodic[axis]) walls_over_area += 2.0 / scene.box.size[axis];
+  }
+  const double most = static_cast<double>(most_layers(scene.in)) * rise_of_layer(scene, expected_fraction(scene).value);
+  const double height = std::min(scene.box.height(), most);
+  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
+  return rate * height > 1e-6 ? -std::expm1(-rate * height) / rate : height;
+}
+
 }  // namespace
 
 BedFraction expected_fraction(const Scene& scene) {
@@ -114,6 +130,22 @@ double rise_of_layer(const Scene& scene, double fraction) {
 std::int64_t expected_layers(const Scene& scene, double fraction) {
   const double layers = std::ceil(scene.box.height() / rise_of_layer(scene, fraction) - 1e-9);
   return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene.in));
+}
+
+double expected_overlap(const Scene& scene, double youngs_modulus) {
+  // A contact bears sigma 4 pi r^2 / (phi Z) in space, of Z contacts a particle; in the plane sigma 2 pi r / (phi Z).
+  constexpr double contacts = 5.0, mean_over_depth = 0.6;
+  constexpr double uneven = 0.9;  // mean of f^(2/3) over that of the mean force, where forces are as uneven as in packs
+  const bool flat = scene.box.dimension == 2;
+  const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing_height(scene);
+  const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
+                         (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);
+  const double root = std::cbrt(squeeze);
+  return uneven * mean_over_depth * root * root;
+}
+
+double modulus_for(const Scene& scene, double overlap, double youngs_modulus) {
+  return youngs_modulus * std::pow(expected_overlap(scene, youngs_modulus) / overlap, 1.5);
 }
 
 }  // namespace packmpi::scene

@@ -29,4 +29,12 @@ struct BedFraction {
 /// Layers that fill the scene's height at this solid fraction; layers.maximum at most.
 [[nodiscard]] std::int64_t expected_layers(const Scene& scene, double fraction);
 
+/// Mean overlap of touching particles over their radius in a bed of the scene's height that rests under its weight, at
+/// this modulus [Pa]: Hertz contacts under the mean force that bears what is above, depth by depth; side walls bear
+/// what Janssen's formula gives them. Within a fifth of what packs come to (doc/theory.md, "Rest"). 0 without gravity.
+[[nodiscard]] double expected_overlap(const Scene& scene, double youngs_modulus);
+
+/// The modulus [Pa] of which it is `overlap`, from one of any other: overlaps go with E^(-2/3).
+[[nodiscard]] double modulus_for(const Scene& scene, double overlap, double youngs_modulus);
+
 }  // namespace packmpi::scene

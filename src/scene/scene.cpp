@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
+#include "scene/expectation.hpp"
 #include "scene/limits.hpp"
 
 namespace packmpi::scene {
@@ -92,6 +93,25 @@ double choose_relaxation(const input::Input& in) {
   return in.dynamics.relaxation.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
 }
 
+// Ten falls through the whole height, for the final stage to come to rest in (doc/theory.md, "Rest").
+double choose_wait(const input::Input& in) {
+  constexpr double falls = 10.0;
+  const double g = in.jamming.gravity;
+  return in.rest.wait.value_or(g > 0.0 ? falls * std::sqrt(2.0 * in.container.size.back() / g) : 0.0);
+}
+
+// The weight of a bed must not press its particles together beyond what the contact law is for.
+void check_softness(const input::Input& in, const Scene& scene, const char* key, double youngs_modulus) {
+  constexpr double most = 0.5;  // of a radius, in the mean
+  const double overlap = expected_overlap(scene, youngs_modulus);
+  if (!(overlap > most)) return;
+  refuse(in, fmt::format("{}: {:g} Pa is too soft for this bed: under its weight, density x gravity x H_d = {:.3g} Pa, "
+                         "particles would overlap by {:.2g} radii; {:.1e} Pa gives 1 %{}",
+                         key, youngs_modulus, in.particles.density * in.jamming.gravity * in.container.size.back(),
+                         overlap, modulus_for(scene, 0.01, youngs_modulus),
+                         youngs_modulus < 1e4 ? "; a number without a unit is in Pa: \"100 MPa\" has one" : ""));
+}
+
 Features features_of(const input::Input& in) {
   Features f;
   f.dimension = in.container.dimension;
@@ -153,6 +173,9 @@ Scene build(const input::Input& in) {
       choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
   scene.settling = choose_settling(in, scene.sizes, scene.time_step);
   scene.relaxation = choose_relaxation(in);
+  scene.wait = choose_wait(in);
+  check_softness(in, scene, "particles.youngs_modulus", in.particles.youngs_modulus);
+  if (softer(in)) check_softness(in, scene, "layers.youngs_modulus", *in.layers.youngs_modulus);
   if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
   check_periodic(in, scene);
   scene.most_columns = most_columns(scene);

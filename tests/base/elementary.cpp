@@ -57,6 +57,13 @@ TEST(Elementary, CirclesAndTheErrorFunctionToAFewLastBits) {
   EXPECT_EQ(complementary_error(-40.0), 2.0);
 }
 
+TEST(Elementary, CosineOfAQuarterTurn) {
+  for (int k = 0; k <= 1000; ++k) {
+    const double x = k * (0.5e-3 * std::numbers::pi);
+    EXPECT_NEAR(cosine(x), std::cos(x), 5e-16);
+  }
+}
+
 TEST(Elementary, ExactValues) {
   EXPECT_EQ(logarithm(1.0), 0.0);
   EXPECT_EQ(exponential(0.0), 1.0);

@@ -42,6 +42,8 @@ duration = 0.4
 gravity = 5.0
 [contact]
 damping_ratio = 0.3
+[rest]
+wait = 0.0   # how long a bed takes to come to rest is not estimated
 )";
 
 class Estimates : public ::testing::Test {
@@ -133,7 +135,7 @@ TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
   ASSERT_EQ(e.layers.value, 1);
   EXPECT_NEAR(static_cast<double>(e.checkpoint_bytes), static_cast<double>(bytes), 0.02 * static_cast<double>(bytes));
   const report::RunRecord record = run::make_pack(comm_, scene(set), options());
-  const std::int64_t contacts = std::llround(0.5 * record.coordination * static_cast<double>(record.particles));
+  const std::int64_t contacts = std::llround(0.5 * record.rest.network.coordination * static_cast<double>(record.particles));
   EXPECT_GT(contacts, 0);
   EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts, observe::map_columns(scene(set))),
             static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));

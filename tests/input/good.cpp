@@ -13,6 +13,7 @@
 #include "input/keys.hpp"
 #include "input/radius_range.hpp"
 #include "input/read.hpp"
+#include "input/restitution.hpp"
 #include "input/rhythm.hpp"
 #include "input/starter.hpp"
 #include "input/time_step.hpp"
@@ -86,6 +87,13 @@ settled_drift = 2e-3
 settled_hold = "0.1 s"
 window = 3
 relaxation = "0.6 s"
+[rest]
+unbalanced_force = 0.5
+kinetic_energy = 0.02
+support = 0.3
+mean_overlap = "3 %"
+worst_overlap = 0.06
+wait = "70 ms"
 [parallel]
 decomposition = "metis"
 [ensemble]
@@ -151,6 +159,12 @@ TEST(GoodInput, EveryForceAndProgramKeyArrives) {
   EXPECT_EQ(in.dynamics.settled_hold, 0.1);
   EXPECT_EQ(in.dynamics.window, 3);
   EXPECT_EQ(in.dynamics.relaxation, 0.6);
+  EXPECT_EQ(in.rest.unbalanced_force, 0.5);
+  EXPECT_EQ(in.rest.kinetic_energy, 0.02);
+  EXPECT_EQ(in.rest.support, 0.3);
+  EXPECT_EQ(in.rest.mean_overlap, 0.03);
+  EXPECT_EQ(in.rest.worst_overlap, 0.06);
+  EXPECT_EQ(in.rest.wait, 0.07);
   EXPECT_EQ(in.parallel.decomposition, Decomposition::metis);
   EXPECT_TRUE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.0);
@@ -173,13 +187,20 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(in.contact.friction, 0.2);
   EXPECT_EQ(in.contact.wall_friction, 0.2);
   EXPECT_EQ(in.contact.friction_velocity, FrictionVelocity::contact);
-  EXPECT_EQ(in.contact.regularisation, Regularisation::stop);
+  EXPECT_EQ(in.contact.regularisation, Regularisation::shared);
+  EXPECT_FALSE(in.contact.restitution.has_value());
   EXPECT_TRUE(in.contact.tension_cutoff);
   EXPECT_EQ(in.contact.wall, WallStiffness::rigid);
   EXPECT_EQ(in.drag.coefficient, 0.0);
   EXPECT_FALSE(in.near_field.has_value());
   EXPECT_TRUE(in.dynamics.rotation);
   EXPECT_FALSE(in.dynamics.time_step.has_value());
+  EXPECT_EQ(in.rest.unbalanced_force, 0.05);
+  EXPECT_EQ(in.rest.kinetic_energy, 1e-4);
+  EXPECT_EQ(in.rest.support, 0.02);
+  EXPECT_EQ(in.rest.mean_overlap, 0.01);
+  EXPECT_EQ(in.rest.worst_overlap, 0.05);
+  EXPECT_FALSE(in.rest.wait.has_value());
   EXPECT_EQ(in.parallel.decomposition, Decomposition::slab);
   EXPECT_FALSE(in.output.contacts);
   EXPECT_EQ(in.output.log_every, 0.01);
@@ -189,13 +210,75 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
 /// The scene `least` with these keys.
 Input with(const std::vector<std::string>& set) { return parse(least, "a.toml", {set}); }
 
+// m* x'' + d* x' + F = 0 from first touch to where the force ends, in steps so small that the curve is exact: units in
+// which m*, the impact speed and the stiffness of F = x^(3/2) are 1.
+double restitution_by_steps(double xi, bool cutoff) {
+  const auto force = [&](double x, double v) {
+    return x * std::sqrt(x) + 2.0 * xi * std::sqrt(1.5) * std::sqrt(std::sqrt(x)) * v;
+  };
+  constexpr double dt = 2e-5;
+  double x = 0.5 * dt, v = 1.0;  // staggered; nothing happens before
+  while (true) {
+    const double middle = v - 0.5 * dt * force(x, v);
+    const double f = force(x, middle);
+    if (cutoff && f < 0.0) return -v;
+    v -= dt * f;
+    x += dt * v;
+    if (x <= 0.0) return -v;
+  }
+}
+
+TEST(Restitution, IsTheCurveOfTheContactLaw) {
+  for (const double xi : {0.01, 0.1, 0.3, 0.7}) {
+    EXPECT_NEAR(restitution_of(xi, true), restitution_by_steps(xi, true), 2e-4) << xi;
+    EXPECT_NEAR(restitution_of(xi, false), restitution_by_steps(xi, false), 2e-4) << xi;
+  }
+  EXPECT_NEAR(restitution_of(1.0, true), 0.1196, 5e-5);  // measured in whole runs: doc/extremes.md
+  EXPECT_NEAR(restitution_of(5.0, true), 0.0078, 5e-5);
+  EXPECT_EQ(restitution_of(0.0, true), 1.0);
+  EXPECT_NEAR(restitution_of(1.0 / std::sqrt(1.2), true), std::exp(-2.0), 1e-7);
+  EXPECT_EQ(restitution_of(0.95, false), 0.0) << "they stay together";
+}
+
+TEST(Restitution, AndDampingAreInversesOfEachOther) {
+  for (const bool cutoff : {true, false}) {
+    EXPECT_EQ(damping_of(1.0, cutoff), 0.0);
+    for (const double e : {0.999, 0.9, 0.5, 0.14, 0.1353352832, 0.13, 0.05, 1e-3, 1e-6}) {
+      EXPECT_NEAR(restitution_of(damping_of(e, cutoff), cutoff), e, 1e-12) << e;
+    }
+  }
+}
+
+TEST(Restitution, IsTheOtherWayToSayDamping) {
+  const Input in = with({"contact.restitution=0.5"});
+  EXPECT_EQ(in.contact.damping_ratio, damping_of(0.5, true));
+  EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << "both are there, and say the same";
+  const Input literal = with({"contact.restitution=0.5", "contact.tension_cutoff=false"});
+  EXPECT_EQ(literal.contact.damping_ratio, damping_of(0.5, false));
+  EXPECT_LT(literal.contact.damping_ratio, in.contact.damping_ratio) << "what pulls while it parts damps more";
+  EXPECT_EQ(with({"contact.restitution=1"}).contact.damping_ratio, 0.0);
+}
+
 TEST(Fidelity, PaperIsAFixedStepAndDurationAndAllMove) {
   const Input in = with({"fidelity=paper"});
   EXPECT_EQ(in.dynamics.time_step, 1e-4);
   EXPECT_EQ(in.layers.duration, 1.0);
   EXPECT_EQ(in.dynamics.window, 0);
   EXPECT_FALSE(in.layers.youngs_modulus.has_value());
-  EXPECT_EQ(with({"fidelity=paper", "dynamics.time_step=auto"}).effective, with({}).effective)
+}
+
+TEST(Fidelity, PaperHasTheLawOfThePaperAndTheRestThatItsBedsCreepAt) {
+  const Input in = with({"fidelity=paper"});
+  EXPECT_EQ(in.contact.regularisation, Regularisation::stop);
+  EXPECT_EQ(in.rest.kinetic_energy, 0.1);
+  EXPECT_EQ(in.rest.wait, 0.0) << "a layer is a second, and the pack is what is there then";
+  EXPECT_EQ(in.rest.mean_overlap, with({}).rest.mean_overlap);
+  EXPECT_EQ(with({"fidelity=paper", "rest.kinetic_energy=1e-3"}).rest.kinetic_energy, 1e-3)
+      << "a key that is named wins";
+  EXPECT_EQ(with({"fidelity=paper", "dynamics.time_step=auto", "contact.regularisation=shared",
+                  "rest={unbalanced_force=0.05,kinetic_energy=1e-4,support=0.02,wait=\"auto\"}"})
+                .effective,
+            with({}).effective)
       << "without the key, each key has its own default";
 }
 

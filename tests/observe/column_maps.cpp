@@ -62,7 +62,7 @@ TEST_F(Maps, AddUpToTheMeasuresOfTheWholePack) {
   const particles::Store store = testing::scattered(comm_, scene_.features.layout(), grains, Spread::all);
   const ColumnMaps here = maps(comm_, grains, Spread::all);
   const double mean = comm::exact_sum(comm_, here.solid_fraction) / static_cast<double>(map_columns(scene_));
-  EXPECT_NEAR(mean, density(comm_, store, scene_).phi, 1e-13);
+  EXPECT_NEAR(mean, density(comm_, store, scene_, bulk_of(scene_, 1.0)).phi, 1e-13);
   double highest = 0.0;
   for (const double one : here.top) highest = std::max(highest, one);
   EXPECT_EQ(comm_.max(highest), top(comm_, store, scene_));

@@ -114,6 +114,13 @@ inline report::RunRecord some_record(int dimension, std::size_t layers) {
     row.stop_reason = k % 2 == 0 ? "duration" : "settled";
     r.layers.push_back(row);
   }
+  r.criteria = {{.name = "unbalanced_force", .words = "unbalanced force ratio", .value = 0.25, .limit = 0.05},
+                {.name = "support",
+                 .words = "force of floor and walls over weight",
+                 .value = 0.99,
+                 .limit = 0.02,
+                 .target = 1.0}};
+  r.missed = {"rest.unbalanced_force: it is 0.25", "another target"};
   r.audit.expected = r.audit.found = 1234567890123;
   r.ranks = 3;
   r.version = "0.1.0";

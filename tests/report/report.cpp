@@ -47,6 +47,12 @@ TEST_F(Report, JsonGivesEveryNumberBack) {
   ASSERT_EQ(json["layers"].size(), 4u);
   EXPECT_EQ(json["layers"][3]["inserted"].get<std::int64_t>(), 1000000003);
   EXPECT_EQ(json["layers"][1]["stop_reason"].get<std::string>(), "settled");
+  EXPECT_EQ(json["rest"]["support"]["value"].get<double>(), 0.99);
+  EXPECT_EQ(json["rest"]["support"]["target"].get<double>(), 1.0);
+  EXPECT_EQ(json["rest"]["support"]["limit"].get<double>(), 0.02);
+  EXPECT_TRUE(json["rest"]["support"]["met"].get<bool>());
+  EXPECT_FALSE(json["rest"]["unbalanced_force"]["met"].get<bool>());
+  EXPECT_EQ(json["missed"].get<std::vector<std::string>>(), record.missed);
   EXPECT_EQ(json["units"]["phi"].get<std::string>(), "-");
   EXPECT_EQ(json["units"]["floor_force"].get<std::string>(), "N");
 }
@@ -78,12 +84,12 @@ TEST_F(Report, TableFitsAScreenAndIsAligned) {
   while (std::getline(lines, line)) {
     EXPECT_LE(line.size(), 100u) << line;
     if (line.find("target") != std::string::npos && quantity_end == 0) quantity_end = line.size();
-    if (count >= 1 && count <= 24) {
+    if (count >= 1 && count <= 25) {
       EXPECT_EQ(line.size(), quantity_end) << line;
     }
     ++count;
   }
-  EXPECT_EQ(count, 1u + 24u + 1u + 12u);
+  EXPECT_EQ(count, 1u + 25u + 1u + 12u);
 }
 
 RunRecord counted_record(std::int64_t big) {

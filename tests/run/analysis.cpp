@@ -88,7 +88,7 @@ class Analysis : public ::testing::Test {
       ++id;
     }
     bed.neighborhood.rebuild(bed.store);
-    return observe::analyse({comm_, scene, bed.store, bed.neighborhood, reach});
+    return observe::analyse(observe::specimen_of(comm_, scene, bed.store, bed.neighborhood, reach));
   }
 };
 
@@ -208,7 +208,7 @@ TEST_F(Analysis, ForcesOfASqueezedLatticeAreHertzAndItsStressIsTheForceOverTheAr
 // Planes of large and small spheres in turn: radical cells are boxes, and the planes between them are nearer to the
 // small ones by (R^2 - r^2) / 2 h, h their distance.
 TEST_F(Analysis, RadicalCellsOfTwoSizesInTurnAreBoxesThatFillThePack) {
-  constexpr double large = 1.5 * r, side = 0.07, h = 0.055;
+  constexpr double large = 1.5 * r, side = 0.065, h = 0.055;
   Lattice planes{.points = {}, .size = {7 * side, 7 * side, 10 * h}};
   for (int k = 0; k < 490; ++k) {
     planes.points.push_back({(k % 7 + 0.5) * side, (k / 7 % 7 + 0.5) * side, (k / 49 + 0.5) * h});

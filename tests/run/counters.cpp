@@ -82,7 +82,7 @@ TEST_F(Counters, DoNotDependOnTheRanksWhereTheyMustNot) {
     EXPECT_EQ(sum_of(many, "owned"), many.particles);
     EXPECT_EQ(sum_of(many, "particle_steps"), many.particle_steps);
     EXPECT_DOUBLE_EQ(2.0 * static_cast<double>(sum_of(many, "touching_pairs")),
-                     many.coordination * static_cast<double>(many.particles));
+                     many.rest.network.coordination * static_cast<double>(many.particles));
     EXPECT_EQ(report::moving_share(many), report::moving_share(one));
     EXPECT_LT(report::moving_share(many), 1.0);
     EXPECT_GT(sum_of(many, "touching_pairs"), 0);

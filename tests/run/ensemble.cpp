@@ -32,7 +32,8 @@ const std::string scene_text =
     "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\npoisson_ratio = 0.25\n"
     "radius = { distribution = \"equal\", value = 0.02 }\n"
     "[layers]\nthickness = 0.1\nfraction = 0.2\nduration = 0.02\nmaximum = 2\n[jamming]\ngravity = 2.0\n"
-    "[dynamics]\ntime_step = 1.0e-4\n[ensemble]\nsets = 2\npacks = 2\n";
+    "[dynamics]\ntime_step = 1.0e-4\n[rest]\nunbalanced_force = 1e9\nkinetic_energy = 1e9\nsupport = 1e9\nwait = "
+    "0\n[ensemble]\nsets = 2\npacks = 2\n";
 
 class Ensembles : public ::testing::Test {
  protected:

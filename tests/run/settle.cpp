@@ -187,7 +187,7 @@ TEST(Settle, SoftLayersEndAsHardAsTheOthers) {
   const report::RunRecord soft = pack(in);
   expect_valid(soft);
   EXPECT_GT(soft.layers.back().max_overlap, 2.0 * hard.layers.back().max_overlap);  // (E ratio)^(2/3) is 4.6
-  EXPECT_NEAR(soft.mean_overlap, hard.mean_overlap, 0.25 * hard.mean_overlap);
+  EXPECT_NEAR(soft.rest.mean_overlap, hard.rest.mean_overlap, 0.25 * hard.rest.mean_overlap);
   EXPECT_EQ(soft.layers.front().steps, 3000);
   EXPECT_EQ(soft.time_step, 2e-4);
   EXPECT_NEAR(soft.duration, 3 * 1.5 + 0.6, 1e-9);

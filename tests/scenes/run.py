@@ -4,6 +4,8 @@
 usage: run.py FOLDER [-k PART] -- [mpirun -n N] packmpi       runs them in FOLDER; those whose names contain PART
        run.py FOLDER --table OLD NEW                          digests of the packs that two programs make, as Markdown
 
+The corpus is of the paper's law, friction by "stop", and packs are as they are after their last layer.
+
 A scene begins with comments, of which these are read:
   # with: ARGUMENTS                  more arguments of the command line
   # expect: digest HEX               what `packmpi info` prints of the pack; the exit code is 0 or 3

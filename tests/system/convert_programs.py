@@ -20,7 +20,7 @@ except ImportError as error:
     print(f"skipped: the Python package {error.name} is missing (scripts/setup.sh --plots)")
     sys.exit(77)
 
-SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.4", "--set", "output.contacts=true", "--quiet"]
+SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.4", "--set", "rest.wait=0", "--set", "output.contacts=true", "--quiet"]
 SCENES = {"quickstart": ["--set", "container.size=[0.3, 0.3, 0.45]"], "paper_5_1": ["--set", "container.size=[0.4, 0.5]"]}
 SAID = re.compile(r"^PACK .*?(\d+) particles, volume (\S+) m3, mass (\S+) kg, largest (?:contact )?force.*? (\S+) N$",
                   re.MULTILINE)

@@ -18,7 +18,7 @@ except ImportError as error:
     print(f"skipped: the Python package {error.name} is missing (scripts/setup.sh --plots)")
     sys.exit(77)
 
-SMALL = ["--set", "layers.duration=0.01", "--set", "layers.maximum=2", "--quiet"]  # stops short of the height: exit 3
+SMALL = ["--set", "layers.duration=0.01", "--set", "layers.maximum=2", "--set", "rest.wait=0", "--quiet"]  # stops short of the height: exit 3
 TYPES = {"float64": "<f8", "int64": "<i8", "uint64": "<u8", "int32": "<i4", "uint8": "|u1"}
 ROW = re.compile(r"^\| `(/[^`]+)` \|([^|]*)\|([^|]*)\|([^|]*)\|$")
 
@@ -102,7 +102,7 @@ def check_json(path, table, page):
     summary = json.loads(path.read_text())
     names = {part: {name.split("@")[1] for name in table if name.startswith(f"/{group}/@")}
              for part, group in (("summary", "summary"), ("audit", "summary/audit"), ("provenance", "provenance"))}
-    expect(set(summary) == {"format", "format_version", "target", "achieved", "sizes", "audit", "layers", "counters", "costs",
+    expect(set(summary) == {"format", "format_version", "target", "achieved", "sizes", "audit", "rest", "missed", "layers", "counters", "costs",
                             "moving_share", "provenance", "seal", "units"}, f"{path.name}: parts are {sorted(summary)}")
     for part in ("counters", "costs"):
         expect(set(summary[part]) == set(re.findall(rf"`{part}\.(\w+)`", page)),
@@ -115,6 +115,9 @@ def check_json(path, table, page):
         points = {f"d{percent}" for percent in (10, 30, 50, 60, 90)} | {"cu", "cc"}
         expect(set(sizes) == {"target", "achieved", "distance"}, f"{path.name}: sizes by {weighting}")
         expect(set(sizes["target"]) == points and set(sizes["achieved"]) == points, f"{path.name}: sizes by {weighting}")
+    measures = {name.split("@")[1] for name in table if name.startswith("/summary/rest/@")} - {"missed"}
+    expect(set(summary["rest"]) == {name for name in measures if not name.endswith("_limit")}, f"{path.name}: rest")
+    expect(bool(summary["missed"]), f"{path.name}: a target is missed here, and not named")
     expect(set(summary["audit"]) == names["audit"], f"{path.name}: audit")
     expect(set(summary["provenance"]) == names["provenance"], f"{path.name}: provenance")
     columns = {name.split("/")[-1] for name in table if name.startswith("/summary/layers/")}

@@ -22,7 +22,8 @@ except ImportError as error:
     print(f"skipped: the Python package {error.name} is missing (scripts/setup.sh --report)")
     sys.exit(77)
 
-SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.015", "--set", "output.contacts=true", "--quiet"]
+SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.015", "--set", "rest.wait=0", "--set", "rest.unbalanced_force=1e9", "--set", "rest.kinetic_energy=1e9",
+         "--set", "rest.support=1e9", "--set", "output.contacts=true", "--quiet"]
 SCENES = {"grading": ["--set", 'container.size=["80 mm", "80 mm", "60 mm"]'], "periodic_2d": []}
 ROWS = """[...document.querySelectorAll('#targets tr')].map(row => [...row.children].map(cell => cell.textContent))"""
 IMAGES = """Promise.all([...document.images].map(image => image.decode().then(() => [image.alt, image.naturalWidth],

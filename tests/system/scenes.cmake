@@ -1,6 +1,6 @@
 # Every scene of input/, scaled down, on one and two ranks; and every exit code.
 set(input ${PROJECT_SOURCE_DIR}/input)
-set(short --set layers.duration=0.005 --set layers.maximum=2 --set output.log_every=0.005)
+set(short --set layers.duration=0.005 --set layers.maximum=2 --set rest.wait=0 --set output.log_every=0.005)
 file(GLOB scenes CONFIGURE_DEPENDS ${input}/*.toml)
 foreach(scene IN LISTS scenes)
   get_filename_component(name ${scene} NAME_WE)

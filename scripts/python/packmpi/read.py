@@ -54,8 +54,9 @@ class Pack:
     layer           (N): layer of insertion, from 0
     contacts        (N): touching particles
     pairs, forces   (M, 2) ids and (M, 3) forces on the first [N], or None if the pack was written without contacts
-    phi, phi_bulk   solid fraction below H_d, and between 0.2 H_d and 0.8 H_d
-    summary, audit, layers, provenance      what the file says of the whole pack, by name; layers: a list for each name
+    phi, phi_bulk   solid fraction below H_d, and of the bulk: between 0.2 and 0.8 of H_d, or of the height of a bed below that
+    summary, audit, rest, layers, provenance    what the file says of the whole pack, by name; layers: a list for each name; rest:
+                    measures, their limits (NAME_limit) and what was missed; empty of a pack that was made before there was rest
 
     Raises Problem if the file cannot be read or is no pack. The seal is not looked at: `packmpi info` does that.
     """
@@ -81,6 +82,7 @@ class Pack:
         self.contacts: Integers = particles["contacts"][:]
         self.summary = attributes(file["summary"])
         self.audit = attributes(file["summary/audit"])
+        self.rest = attributes(file["summary/rest"]) if "summary/rest" in file else {}
         self.layers: dict[str, list[Any]] = {present(name): data[:].tolist() for name, data in file["summary/layers"].items()}
         self.provenance = attributes(file["provenance"])
         self.size: Floats = np.array(self.summary["size"], dtype=float)

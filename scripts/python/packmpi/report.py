@@ -100,12 +100,13 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
 
 
 def warning(pack: Pack) -> str:
-    """What keeps the pack from being what was wanted, or nothing."""
-    if pack.summary["reached"]:
-        return ""
-    return (f'<p class="warning" role="alert">The pack is lower than its target: {length(pack.summary["height"])} of '
-            f'{length(pack.size[-1])}, stopped by {html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the '
-            'target height are too small.</p>')
+    """What keeps the pack from being what was wanted, a paragraph each, or nothing."""
+    words = []
+    if not pack.summary["reached"]:
+        words.append(f'The pack is lower than its target: {length(pack.summary["height"])} of {length(pack.size[-1])}, stopped by '
+                     f'{html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the target height are too small.')
+    words += [html.escape(line) for line in pack.rest.get("missed", "").splitlines() if not line.startswith("container.size:")]
+    return "".join(f'<p class="warning" role="alert">{line}</p>' for line in words)
 
 
 def pictures(pack: Pack, folder: Path, pixels: int) -> str:
@@ -232,6 +233,24 @@ def verdict(bad: bool) -> str:
     return '<span class="bad">no</span>' if bad else '<span class="good">yes</span>'
 
 
+REST = {"unbalanced_force": "forces balance: unbalanced force ratio", "kinetic_energy": "nothing moves: mean kinetic energy over m g d",
+        "support": "floor and walls bear the weight: force over weight", "mean_overlap": "mean overlap over radius",
+        "worst_overlap": "worst overlap over radius"}
+
+
+def rest(pack: Pack) -> list[list[str]]:
+    """Rows of the checks: how near to rest, beside the limits."""
+    rows = []
+    for name, words in REST.items():
+        if name not in pack.rest:
+            continue
+        value, limit = pack.rest[name], pack.rest[f"{name}_limit"]
+        target = 1.0 if name == "support" else 0.0
+        asked = "" if limit >= 1e9 else f"; limit {number(limit, 3)}" if target == 0.0 else f"; 1 within {number(limit, 3)}"
+        rows.append([words, f"{number(value, 3)}{asked}", verdict(limit < 1e9 and not abs(value - target) < limit)])
+    return rows
+
+
 def checks(pack: Pack) -> str:
     """What the run has verified of its pack."""
     audit = pack.audit
@@ -241,6 +260,7 @@ def checks(pack: Pack) -> str:
             ["no overlap beyond half a radius", f"{number(audit['worst_overlap'], 3)} at most", verdict(audit["worst_overlap"] > 0.5)],
             ["no wall penetrated beyond half a radius", f"{number(audit['worst_wall_penetration'], 3)} at most",
              verdict(audit["worst_wall_penetration"] > 0.5)],
+            *rest(pack),
             ["the target height was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
     return table(["check", "found", "met"], rows, "checks")
 

@@ -1,0 +1,55 @@
+#include "observe/rest.hpp"
+
+#include <algorithm>
+
+#include "dynamics/contact_law.hpp"
+#include "observe/measure.hpp"
+#include "observe/touch.hpp"
+
+namespace packmpi::observe {
+namespace {
+
+/// Upward force of floor and walls on the particles [N].
+double upward_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                    const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
+  const neighbor::WallList& walls = neighborhood.walls();
+  const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  std::vector<double> forces;
+  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
+    const LocalIndex i = walls.particle[w];
+    if (!(wall_penetration(store, scene.box, i, walls.wall[w]) > 0.0)) continue;
+    const auto entry = static_cast<std::int64_t>(w);
+    forces.push_back(dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force[vertical]);
+  }
+  return comm::exact_sum(comm, forces);
+}
+
+/// What floor and walls must bear of particles at rest [N].
+double load(const scene::Scene& scene, const Motion& motion, double particles) {
+  const input::Drag& drag = scene.in.drag;
+  const double lift = drag.coefficient * drag.fluid_velocity[static_cast<std::size_t>(scene.box.vertical())];
+  return motion.mass * scene.in.jamming.gravity - particles * lift;
+}
+
+}  // namespace
+
+Rest rest(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+          const neighbor::Neighborhood& neighborhood) {
+  const dynamics::Law law = dynamics::make_law(scene);
+  const Contacts touching = contacts(comm, store, scene, neighborhood.pairs(), neighborhood.walls());
+  const Motion moving = motion(comm, store, scene);
+  Rest result{.unbalanced_force = unbalanced_force(comm, store, scene, law, neighborhood),
+              .mean_overlap = touching.mean_overlap,
+              .worst_overlap = std::max(touching.max_overlap, touching.max_wall_penetration),
+              .network = network(comm, store, scene, neighborhood)};
+  const double mgd = moving.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
+  if (!(mgd > 0.0)) return result;
+  result.kinetic_energy = moving.kinetic_energy / mgd;
+  const auto particles = static_cast<double>(comm.sum(std::int64_t{store.owned()}));
+  const double borne = load(scene, moving, particles);
+  if (borne > 0.0) result.support = upward_force(comm, store, scene, law, neighborhood) / borne;
+  return result;
+}
+
+}  // namespace packmpi::observe

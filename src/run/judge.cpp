@@ -1,0 +1,161 @@
+#include "run/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "input/time_step.hpp"
+#include "scene/expectation.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr double deepest = 0.5;  // of a radius: no valid pack has such overlaps
+
+// [s] until what a layer inserts highest has come down to the layer's floor.
+double time_of_fall(const input::Input& in) {
+  const double g = in.jamming.gravity;
+  const double up = in.layers.velocity[static_cast<std::size_t>(in.container.dimension - 1)];
+  return g > 0.0 ? (up + std::sqrt(up * up + 2.0 * g * in.layers.thickness)) / g : 0.0;
+}
+
+// Why a bed moves on, and what to change: the first of these that is so.
+std::string why_it_moves(const scene::Scene& scene) {
+  const input::Input& in = scene.in;
+  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const double lift = in.drag.coefficient * in.drag.fluid_velocity[vertical];
+  const double weight = input::mass(in.particles, scene.sizes.smallest()) * in.jamming.gravity;
+  if (lift > 0.0 && lift >= weight) {
+    return fmt::format(
+        "the fluid lifts particles by up to {:.3g} N, which weigh {:.3g} N: lower drag.fluid_velocity or "
+        "drag.coefficient",
+        lift, weight);
+  }
+  const double fall = time_of_fall(in);
+  if (fall > in.layers.duration) {
+    const bool thrown = in.layers.velocity[vertical] > 0.0;
+    return fmt::format("{} {:.3g} s to come down, layers.duration is {:.3g} s: {}give a duration of {:.2g} s or more",
+                       thrown ? "particles are thrown upward by layers.velocity and take" : "a layer takes", fall,
+                       in.layers.duration, thrown ? "turn the velocity downward, or " : "", 2.5 * fall);
+  }
+  const bool slides = in.contact.tangential == input::Tangential::sliding;
+  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  const auto law = in.contact.regularisation;
+  if (slides && rough && (law == input::Regularisation::stop || law == input::Regularisation::none)) {
+    return fmt::format(
+        "friction {:g} with contact.regularisation = \"{}\" gives a bed energy at every step: use "
+        "\"shared\", or contact.tangential = \"mindlin\"",
+        std::max(in.contact.friction, in.contact.wall_friction), law == input::Regularisation::stop ? "stop" : "none");
+  }
+  return fmt::format(
+      "it needs more time or more damping: raise rest.wait (now {:.3g} s), layers.duration ({:.3g} s) or "
+      "contact.damping_ratio ({:.3g})",
+      scene.wait, in.layers.duration, in.contact.damping_ratio);
+}
+
+// Overlaps go with E^(-2/3).
+std::string how_much_harder(const scene::Scene& scene, double overlap, double limit) {
+  const double modulus = scene.in.particles.youngs_modulus * std::pow(overlap / limit, 1.5);
+  return fmt::format("particles are too soft for their weight: use particles.youngs_modulus = {:.1e} Pa or more",
+                     1.1 * modulus);
+}
+
+std::string limit_words(const report::Criterion& c) {
+  if (c.target == 0.0) return fmt::format("the limit is {:g}", c.limit);
+  return fmt::format("it is to be {:g} within {:g}", c.target, c.limit);
+}
+
+void add_rest(const scene::Scene& scene, const report::RunRecord& record, std::vector<std::string>& missed) {
+  const bool rests = at_rest(record.criteria);
+  for (const report::Criterion& c : record.criteria) {
+    if (c.met()) continue;
+    const bool overlap = c.of_overlap;
+    const bool soft = overlap && (rests || scene::expected_overlap(scene, scene.in.particles.youngs_modulus) > c.limit);
+    missed.push_back(fmt::format("rest.{}: the {} is {:.3g}, {}; {}", c.name, c.words, c.value, limit_words(c),
+                                 soft ? how_much_harder(scene, c.value, c.limit) : why_it_moves(scene)));
+  }
+}
+
+void add_audit(const report::Audit& audit, std::vector<std::string>& missed) {
+  if (audit.found != audit.expected) {
+    missed.push_back(fmt::format("{} of {} particles are there", audit.found, audit.expected));
+  }
+  if (audit.non_finite > 0) missed.push_back(fmt::format("{} particles are not finite", audit.non_finite));
+  if (audit.outside > 0) missed.push_back(fmt::format("{} particles are outside the container", audit.outside));
+  const double worst = std::max(audit.worst_overlap, audit.worst_wall_penetration);
+  if (!(worst < deepest)) {
+    missed.push_back(
+        fmt::format("the deepest overlap is {:.3g} of a radius, beyond the {:g} that the contact law is "
+                    "for: use a larger particles.youngs_modulus",
+                    worst, deepest));
+  }
+}
+
+}  // namespace
+
+std::vector<report::Criterion> judge(const scene::Scene& scene, const observe::Rest& rest) {
+  const input::Rest& limits = scene.in.rest;
+  const bool weighs = scene.in.jamming.gravity > 0.0;
+  const double none = std::numeric_limits<double>::infinity();
+  return {{.name = "unbalanced_force",
+           .words = "unbalanced force ratio",
+           .value = rest.unbalanced_force,
+           .limit = limits.unbalanced_force},
+          {.name = "kinetic_energy",
+           .words = "mean kinetic energy over m g d",
+           .value = rest.kinetic_energy,
+           .limit = weighs ? limits.kinetic_energy : none},
+          {.name = "support",
+           .words = "force of floor and walls over weight",
+           .value = rest.support,
+           .limit = weighs ? limits.support : none,
+           .target = 1.0},
+          {.name = "mean_overlap",
+           .words = "mean overlap over radius",
+           .value = rest.mean_overlap,
+           .limit = limits.mean_overlap,
+           .of_overlap = true},
+          {.name = "worst_overlap",
+           .words = "worst overlap over radius",
+           .value = rest.worst_overlap,
+           .limit = limits.worst_overlap,
+           .of_overlap = true}};
+}
+
+bool at_rest(const std::vector<report::Criterion>& criteria) {
+  return std::ranges::all_of(criteria, [](const report::Criterion& c) { return c.of_overlap || c.met(); });
+}
+
+std::vector<std::string> missed_targets(const scene::Scene& scene, const report::RunRecord& record) {
+  std::vector<std::string> missed;
+  if (!record.reached) {
+    missed.push_back(
+        fmt::format("container.size: the height is {:.4g} m of {:.4g} m after {} layers, the most there "
+                    "are ({})",
+                    record.height, record.target_height, record.layers.size(), record.stop_reason));
+  }
+  add_audit(record.audit, missed);
+  add_rest(scene, record, missed);
+  return missed;
+}
+
+void check_energy(const scene::Scene& scene, const std::vector<report::LayerRow>& layers) {
+  constexpr std::size_t few = 3;
+  constexpr double growth = 5.0, noticeable = 0.01;  // [-], m g d
+  if (layers.size() < 2 * few) return;
+  const auto less = [](const report::LayerRow& a, const report::LayerRow& b) {
+    return a.kinetic_per_mgd < b.kinetic_per_mgd;
+  };
+  const double most_before = std::max_element(layers.begin(), layers.begin() + few, less)->kinetic_per_mgd;
+  const double least_now = std::min_element(layers.end() - few, layers.end(), less)->kinetic_per_mgd;
+  if (!(least_now > std::max({growth * most_before, noticeable, scene.in.rest.kinetic_energy}))) return;
+  throw Error(
+      ExitCode::numerical_failure,
+      fmt::format("layer {}: the energy of the bed grows from layer to layer: {:.2g} m g d at most after one of "
+                  "the first {}, {:.2g} m g d at least after one of the last {}; {}",
+                  layers.size(), most_before, few, least_now, few, why_it_moves(scene)));
+}
+
+}  // namespace packmpi::run
