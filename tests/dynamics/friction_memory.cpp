@@ -143,6 +143,98 @@ TEST(FrictionWithMemory, SpinAboutTheNormalIsStoppedByTwistingFrictionAlone) {
   }
 }
 
+/// What a sphere that meets a floor at an angle leaves with: velocities of its centre, and that of its lowest point.
+struct Rebound {
+  double up, along, contact;
+};
+
+Rebound impact(const Shape& shape, double mu, double damping, double fall, double along) {
+  scene::Scene s = rough_scene(shape, mu);
+  s.features.rotation = true;
+  s.in.contact.damping_ratio = damping;
+  s.in.jamming.gravity = 0.0;
+  s.time_step = 1e-7;
+  World world(s);
+  Vec3 x{0.1, 0.1, 0.0}, v{along, 0.0, 0.0};
+  x[up(s)] = r + 1e-9;
+  v[up(s)] = -fall;
+  world.add(x, v, r);
+  while (world.up(0) < r + 2e-9) world.step();
+  const double spin = shape.dimension == 3 ? world.store().spin(0)[1] : -world.store().spin(0)[2];
+  return {world.velocity(0)[up(s)], world.velocity(0)[0], world.velocity(0)[0] - r * spin};
+}
+
+/// The same by the law's differential equations in fine steps: overlap z, slip w, force of the spring.
+Rebound integrated(double mu, double damping, double fall, double along) {
+  const double m = mass(r), dt = 2e-9;
+  const double modulus = 1e8 / (1.0 - 0.0625), shear = 8.0 * 1e8 / (2.0 * 1.25 * 1.75);
+  double z = 0.0, rate = fall, w = along, spring = 0.0, impulse = 0.0;
+  while (z >= 0.0) {
+    const double a = std::sqrt(r * z);
+    const double k = shear * a;
+    const double eta = 2.0 * damping * std::sqrt(k * m * 2.0 / 7.0);
+    const double f =
+        std::max(0.0, 4.0 / 3.0 * modulus * a * z + 2.0 * damping * std::sqrt(2.0 * modulus * a * m) * rate);
+    // Unloading: the displacement stays while the stiffness falls, d(spring) = spring da / a.
+    if (rate < 0.0 && z > 0.0) spring += spring * 0.5 * rate / z * dt;
+    const double trial = spring + k * w * dt + eta * w;
+    const double t = std::clamp(trial, -mu * f, mu * f);
+    if (k > 0.0) spring += k * dt * (t - spring) / (k * dt + eta);
+    w -= 3.5 * t / m * dt;
+    impulse += t * dt;
+    rate -= f / m * dt;
+    z += rate * dt;
+  }
+  return {-rate, along - impulse / m, w};
+}
+
+// Chung & Ooi 2011, tests 4 to 6: sliding throughout, and below.
+TEST(FrictionWithMemory, ObliqueImpactSlidesOrSticksAsItShould) {
+  constexpr double mu = 0.3, fall = 0.2;
+  for (const Shape& shape : shapes) {
+    for (const double damping : {0.0, 0.1}) {
+      for (const double slope : {0.1, 0.3, 0.6, 0.9, 1.2, 2.5, 4.0}) {
+        const Rebound seen = impact(shape, mu, damping, fall, slope * fall);
+        const Rebound exact = integrated(mu, damping, fall, slope * fall);
+        EXPECT_WITHIN(seen.up, exact.up);
+        EXPECT_WITHIN(seen.along, exact.along) << slope;
+        EXPECT_NEAR(seen.contact, exact.contact, permille * slope * fall) << slope;
+        if (slope < 3.5 * mu * 2.0) continue;
+        const double e = seen.up / fall;
+        EXPECT_WITHIN(seen.along, slope * fall - mu * (1.0 + e) * fall);
+        EXPECT_WITHIN(seen.contact, slope * fall - 3.5 * mu * (1.0 + e) * fall);
+      }
+    }
+  }
+}
+
+// Maw, Barber & Fawcett 1976, without damping: after steep impacts, which stick, the lowest point goes on; flatter ones
+// send it back, most where they slide but for their end; beyond psi = 4 chi, chi = 7/2 (1 - nu) / (2 - nu), they slide
+// throughout.
+TEST(FrictionWithMemory, ObliqueImpactSpringsBackAsElasticSpheresDo) {
+  constexpr double mu = 0.3, fall = 0.2;
+  constexpr double chi = 3.5 * 0.75 / 1.75;
+  const double scale = 2.0 * 0.75 / (mu * 1.75);  // psi = 2 (1 - nu) / (mu (2 - nu)) tan
+  double least = 0.0, least_at = 0.0;
+  for (double psi = 0.25; psi < 8.0; psi += 0.25) {
+    const double after = scale * impact({3, false}, mu, 0.0, fall, psi / scale * fall).contact / fall;
+    if (after < least) least = after, least_at = psi;
+    if (psi < 0.8) {
+      EXPECT_GT(after, 0.0) << psi;
+    }
+    if (psi > 2.0 && psi < 4.0 * chi - 0.1) {
+      EXPECT_LT(after, 0.0) << psi;
+    }
+    if (psi > 4.0 * chi) {
+      EXPECT_NEAR(after, psi - 4.0 * chi, permille * psi);
+    }
+  }
+  EXPECT_LT(least, -0.8);
+  EXPECT_GT(least, -1.5);
+  EXPECT_GT(least_at, 2.5);
+  EXPECT_LT(least_at, 5.0);
+}
+
 /// Moves the second of two spheres, or the only one on the floor, along a path, whatever the forces, and tells what the
 /// contact does.
 class Rig {
