@@ -41,15 +41,15 @@ ContactEffect resolve(const Features& f, const plain::Constants& c, const Meetin
 ContactEffect resolve(const scene::Scene& scene, const Law& law, const LawConstants& kind, const Meeting& at,
                       const StoredView& stored, std::int64_t entry) {
   const plain::Constants c = plain::constants_of(law, kind, 0.0);
-  return scene.box.dimension == 3 ? resolve<3>(scene.features, c, at, stored, entry)
-                                  : resolve<2>(scene.features, c, at, stored, entry);
+  return scene.container.dimension == 3 ? resolve<3>(scene.features, c, at, stored, entry)
+                                        : resolve<2>(scene.features, c, at, stored, entry);
 }
 
 }  // namespace
 
 ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            LocalIndex j, const StoredView& stored, std::int64_t entry) {
-  const Vec3 d = geometry::separation(scene.box, store.position(i), store.position(j));
+  const Vec3 d = geometry::separation(scene.container, store.position(i), store.position(j));
   const double radii = store.radius(j) + store.radius(i);
   const plain::Touch touch = plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
   const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
@@ -70,7 +70,7 @@ ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const part
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            neighbor::Wall wall, const StoredView& stored, std::int64_t entry) {
-  const geometry::Plane plane = scene.box.plane(wall);
+  const geometry::Plane plane = scene.container.plane(wall);
   const double r = store.radius(i);
   const double distance = plane.distance(store.position(i));
   const double k = store.record(i)[store.layout().curvature];

@@ -28,7 +28,7 @@ bool is_finite(const particles::Store& store, LocalIndex i) {
 
 /// Overlap of a listed pair over the smaller radius; negative: apart.
 double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
-  const Vec3 d = geometry::separation(now.scene.box, now.store.position(i), now.store.position(j));
+  const Vec3 d = geometry::separation(now.scene.container, now.store.position(i), now.store.position(j));
   const double ri = now.store.radius(i);
   const double rj = now.store.radius(j);
   return (ri + rj - norm(d)) / std::min(ri, rj);
@@ -36,7 +36,7 @@ double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
 
 /// Penetration of a wall over the radius; negative: apart.
 double penetration_of(const Inspected& now, LocalIndex i, neighbor::Wall wall) {
-  const double distance = now.scene.box.plane(wall).distance(now.store.position(i));
+  const double distance = now.scene.container.plane(wall).distance(now.store.position(i));
   return (now.store.radius(i) - distance) / now.store.radius(i);
 }
 

@@ -29,7 +29,7 @@ Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::
   const double inverse_masses = inverse_mass(law, store, i) + inverse_mass(law, store, j);
   Interaction at{.first = i,
                  .second = j,
-                 .d = geometry::separation(scene.box, store.position(i), store.position(j)),
+                 .d = geometry::separation(scene.container, store.position(i), store.position(j)),
                  .v = {},
                  .s = {},
                  .wall_normal = {},
@@ -46,7 +46,7 @@ Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::
 
 Interaction of_wall(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                     neighbor::Wall wall) {
-  const geometry::Plane plane = scene.box.plane(wall);
+  const geometry::Plane plane = scene.container.plane(wall);
   const Vec3 x = store.position(i), v = store.velocity(i);
   Interaction at{.first = i,
                  .second = -1,

@@ -243,7 +243,7 @@ void ImplicitSystem::restore() {
 }
 
 void ImplicitSystem::accept() {
-  const geometry::Container& box = scene_.box;
+  const geometry::Container& box = scene_.container;
   for (LocalIndex i = 0; i < store_.owned(); ++i) {
     for (int a = 0; a < box.lateral_axes(); ++a) {
       const auto axis = static_cast<std::size_t>(a);

@@ -42,7 +42,7 @@ bool add_near_field(const scene::Scene& scene, const particles::Store& store, co
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
-    const Vec3 x = geometry::separation(scene.box, store.position(i), store.position(j));
+    const Vec3 x = geometry::separation(scene.container, store.position(i), store.position(j));
     const double distance = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     if (distance == 0.0 || distance >= law.cutoff) continue;
     const double attraction = law.alpha1 * inverse_power(distance, law.beta1);

@@ -13,7 +13,7 @@ constexpr std::size_t alignment = 64 / sizeof(std::int64_t);
 
 Vec3 gravity_of(const scene::Scene& scene) {
   Vec3 g{};
-  g[static_cast<std::size_t>(scene.box.vertical())] = -scene.in.jamming.gravity;
+  g[static_cast<std::size_t>(scene.container.vertical())] = -scene.in.jamming.gravity;
   return g;
 }
 
@@ -163,8 +163,8 @@ StepData Stepper::data(particles::Store& store, neighbor::Neighborhood& neighbor
       .gravity = gravity_of(*scene_),
       .drag = scene_->in.drag.coefficient,
       .fluid_velocity = scene_->in.drag.fluid_velocity,
-      .size = scene_->box.size,
-      .periodic = scene_->box.periodic,
+      .size = scene_->container.size,
+      .periodic = scene_->container.periodic,
       .stored_pairs = {neighborhood.memory().of_pairs(), std::ssize(pairs.first)},
       .stored_walls = {neighborhood.memory().of_walls(), std::ssize(walls.particle)},
   };

@@ -140,7 +140,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
     scene = scene_of(*file);
   });
   pack::check_pack(comm, request.pack);
-  check_copies(request, scene.box);
+  check_copies(request, scene.container);
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });

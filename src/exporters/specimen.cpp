@@ -36,7 +36,7 @@ struct Found {
 Found look(const comm::Comm& comm, const Selection& selection, const scene::Scene& scene) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const disk::IdBlocks share{selection.places(), comm.size()};
-  const auto up = static_cast<std::size_t>(scene.box.vertical());
+  const auto up = static_cast<std::size_t>(scene.container.vertical());
   const double scale = volume_quanta / sphere(scene.sizes.largest());
   Found found;
   found.lowest.fill(infinity);
@@ -63,12 +63,12 @@ std::string axis_words(const Specimen& s, std::size_t axis) {
 }  // namespace
 
 bool Selection::kept(const pack::ParticleRow& row) const {
-  const double centre = row.position[static_cast<std::size_t>(scene_->box.vertical())];
+  const double centre = row.position[static_cast<std::size_t>(scene_->container.vertical())];
   switch (trim_) {
     case Trim::drop:
-      return centre + row.radius <= scene_->box.height();
+      return centre + row.radius <= scene_->container.height();
     case Trim::cut:
-      return centre <= scene_->box.height();
+      return centre <= scene_->container.height();
     case Trim::none:
       break;
   }
@@ -94,8 +94,8 @@ void Selection::visit_batch(std::int64_t copy, const pack::PackRows& rows,
     row.id += copy * file_->count() + 1;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (at[axis] == 0) continue;
-      const double end = scene_->box.size[axis] * copies_[axis];  // rounding must not reach it
-      row.position[axis] = std::min(row.position[axis] + static_cast<double>(at[axis]) * scene_->box.size[axis],
+      const double end = scene_->container.size[axis] * copies_[axis];  // rounding must not reach it
+      row.position[axis] = std::min(row.position[axis] + static_cast<double>(at[axis]) * scene_->container.size[axis],
                                     std::nextafter(end, 0.0));
     }
     take(row);
@@ -130,7 +130,7 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
   s.copies = request.copies;
   s.count = comm.sum(found.count);
   s.volume = static_cast<double>(comm.sum(found.quanta)) * (sphere(scene.sizes.largest()) / volume_quanta);
-  s.size = scene.box.size;
+  s.size = scene.container.size;
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) s.size[axis] *= request.copies[axis];
   s.top = comm.max(found.top);
   s.widest = s.count > 0 ? comm.max(found.widest) : comm.max(1.0);

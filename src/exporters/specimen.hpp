@@ -66,10 +66,10 @@ struct Specimen {
   double widest = 0.0;       ///< [m] largest radius written; 1 if nothing is
   Vec3 lowest{}, highest{};  ///< [m] of the centres
 
-  [[nodiscard]] bool flat() const { return scene.box.dimension == 2; }
-  [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.box.vertical()); }
+  [[nodiscard]] bool flat() const { return scene.container.dimension == 2; }
+  [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.container.vertical()); }
   /// Of axis x, y or z.
-  [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.box.periodic[axis]; }
+  [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.container.periodic[axis]; }
 };
 
 /// An interval [m].

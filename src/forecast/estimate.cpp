@@ -46,16 +46,18 @@ struct Fitted {
   double thickness, height;
 };
 Fitted fit_height(const scene::Scene& scene, double particles, double layers, double fraction) {
-  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const double mean =
+      geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
   const double solid = (particles / layers - margin) * mean;  // of a layer: insertion overshoots by half a particle
-  return {.thickness = solid / (scene.in.layers.fraction * scene.box.floor_area()),
-          .height = (layers - margin) * solid / (fraction * scene.box.floor_area())};
+  return {.thickness = solid / (scene.in.layers.fraction * scene.container.floor_area()),
+          .height = (layers - margin) * solid / (fraction * scene.container.floor_area())};
 }
 
 // Area of the floor on which the scene's height takes so many particles.
 double fit_floor(const scene::Scene& scene, double particles, double fraction) {
   const double layers = static_cast<double>(scene::expected_layers(scene, fraction));
-  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const double mean =
+      geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
   const double a_layer = particles / layers - margin;
   if (!(a_layer > 0.0)) {
     refuse(fmt::format("{} particles are less than one for each of {:.0f} layers; lower the height or thicken layers",
@@ -122,7 +124,7 @@ void scale_floor(const Question& question, double area, std::vector<double>& siz
 scene::Scene solved(const comm::Comm& comm, const Source& source, const Question& question, Unknown& unknown) {
   scene::Scene scene = changed(comm, source, {});
   std::vector<double> size = scene.in.container.size;
-  unknown = unknown_of(question, scene.box.lateral_axes());
+  unknown = unknown_of(question, scene.container.lateral_axes());
   if (question.height) size.back() = *question.height;
   for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
     size[axis] = question.sides[axis].value_or(size[axis]);
@@ -153,11 +155,12 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
 double ghost_share(const scene::Scene& scene, int ranks) {
   const auto side = [&](std::size_t axis, int parts) {  // copies along one axis, by the part's own width
     if (parts == 1) return 0.0;
-    const double faces = parts == 2 && !scene.box.periodic[axis] ? 1.0 : 2.0;
-    return std::min(1.0 * (parts - 1), faces * scene.column_width() * parts / scene.box.size[axis]);
+    const double faces = parts == 2 && !scene.container.periodic[axis] ? 1.0 : 2.0;
+    return std::min(1.0 * (parts - 1), faces * scene.column_width() * parts / scene.container.size[axis]);
   };
-  const std::size_t longer = scene.box.dimension == 3 && scene.box.size[1] > scene.box.size[0] ? 1 : 0;
-  if (scene.in.parallel.decomposition == input::Decomposition::slab || scene.box.dimension == 2)
+  const std::size_t longer =
+      scene.container.dimension == 3 && scene.container.size[1] > scene.container.size[0] ? 1 : 0;
+  if (scene.in.parallel.decomposition == input::Decomposition::slab || scene.container.dimension == 2)
     return side(longer, ranks);
   double least = side(longer, ranks);
   for (int parts = 2; parts < ranks; ++parts) {
@@ -172,13 +175,13 @@ double ghost_share(const scene::Scene& scene, int ranks) {
 // Bytes of a particle on its rank, and of a copy.
 double own_bytes(const scene::Scene& scene) {
   const particles::Layout layout = scene.features.layout();
-  const int axes = scene.box.dimension;
+  const int axes = scene.container.dimension;
   const double stored = static_cast<double>(layout.record_bytes()) + sizeof(GlobalId);
   const double remembered = sizeof(double) * (axes + (scene.features.graded ? 1.0 : 0.0));
   return growth * stored + remembered;
 }
 double list_bytes(const scene::Scene& scene) {
-  const double pairs = pairs_a_particle[static_cast<std::size_t>(scene.box.dimension - 2)];
+  const double pairs = pairs_a_particle[static_cast<std::size_t>(scene.container.dimension - 2)];
   const int stored = scene::stored_doubles(scene.features);
   if (stored == 0) return growth * pair_bytes * pairs;
   // What contacts remember, and once more, with two words each, where they touch, while the lists are made anew.
@@ -217,7 +220,7 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   record.layers.assign(rows, some_row());
   std::optional<std::int64_t> contacts;
   if (scene.in.output.contacts) {
-    const double touching = scene.box.dimension == 3 ? 5.2 : 4.5;  // of a particle
+    const double touching = scene.container.dimension == 3 ? 5.2 : 4.5;  // of a particle
     contacts = std::llround(0.5 * touching * static_cast<double>(e.particles.value));
   }
   e.pack_bytes =

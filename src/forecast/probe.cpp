@@ -22,7 +22,7 @@ constexpr std::int64_t implicit_steps = 2;
 // The same scene on a smaller floor; if that is still too much, with thinner layers.
 scene::Scene small_scene(const scene::Scene& scene) {
   input::Input in = scene.in;
-  const auto axes = static_cast<std::size_t>(scene.box.lateral_axes());
+  const auto axes = static_cast<std::size_t>(scene.container.lateral_axes());
   const double share = particles_wanted / static_cast<double>(scene::particles_a_layer(scene));
   const double factor = axes == 2 ? std::sqrt(share) : share;
   double area_left = share;

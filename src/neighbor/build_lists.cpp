@@ -73,7 +73,7 @@ void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const
 
 // `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
 void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) {
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   const bool graded = scene_->features.graded && touching > 0.0;
   Search s{x_[0].data(),
            x_[1].data(),
@@ -130,7 +130,7 @@ void Neighborhood::build_walls(const particles::Store& store) {
   walls_.particle.clear();
   walls_.wall.clear();
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    scene_->box.near_walls(store.position(i), store.radius(i) + scene_->skin, [&](Wall wall, double) {
+    scene_->container.near_walls(store.position(i), store.radius(i) + scene_->skin, [&](Wall wall, double) {
       walls_.particle.push_back(i);
       walls_.wall.push_back(wall);
     });

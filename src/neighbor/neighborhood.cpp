@@ -152,7 +152,7 @@ Alarm Neighborhood::follow(particles::Store& store, double max_speed, double tim
 }
 
 bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const {
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   const Vec3 x = store.position(i);
   const double z = x[static_cast<std::size_t>(box.vertical())];
   return box.beyond(x) < store.radius(i) && z < highest * (box.height() + scene_->in.layers.thickness);
@@ -253,7 +253,7 @@ void Neighborhood::give(const particles::Store& store, std::span<const ContactHi
 }
 
 void Neighborhood::sort_owned(particles::Store& store) {
-  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene_->container.vertical());
   double top = 0.0;
   double bottom = HUGE_VAL;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
@@ -303,7 +303,7 @@ std::vector<Sends> Neighborhood::choose_sends(const particles::Store& store) con
 
 void Neighborhood::sort_ghosts(particles::Store& store) {
   const auto ghosts = static_cast<std::size_t>(store.ghosts());
-  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene_->container.vertical());
   const auto levels = static_cast<std::size_t>(cells_.levels);
   const auto first_cell = static_cast<std::size_t>(columns_.own()) * levels;
   std::vector<std::size_t> cell(ghosts);
@@ -332,7 +332,7 @@ void Neighborhood::add_frozen(particles::Store& store) {
     frozen_.arrange(*ownership_, columns_, range);
     frozen_arranged_ = true;
   }
-  const auto vertical = static_cast<std::size_t>(scene_->box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene_->container.vertical());
   std::vector<double> lowest(static_cast<std::size_t>(columns_.total()), HUGE_VAL);
   for (int c = 0; c < columns_.own(); ++c) {
     const auto levels = static_cast<std::size_t>(cells_.levels);
@@ -355,7 +355,7 @@ void Neighborhood::add_frozen(particles::Store& store) {
 
 void Neighborhood::remember_positions(const particles::Store& store) {
   const auto total = static_cast<std::size_t>(store.total());
-  for (int a = 0; a < scene_->box.dimension; ++a) {
+  for (int a = 0; a < scene_->container.dimension; ++a) {
     std::vector<double>& x = x_[static_cast<std::size_t>(a)];
     resize_tightly(x, total);
     for (std::size_t i = 0; i < total; ++i) x[i] = store.record(static_cast<LocalIndex>(i))[a];
@@ -366,7 +366,7 @@ void Neighborhood::remember_positions(const particles::Store& store) {
 }
 
 double Neighborhood::largest_displacement(const particles::Store& store) const {
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   double largest = 0.0;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double* record = store.record(i);

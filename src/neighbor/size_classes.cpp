@@ -52,7 +52,7 @@ void SizeClasses::build(const Cloud& cloud, PairList& list) {
 
 // Cells one interaction range of the class wide; wider where that would make many more cells than particles.
 void SizeClasses::make_grid(Level& level, double low, double high) const {
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   const double width = (2.0 * level.largest + scene_->skin) * (1.0 + 1e-9);
   const double margin = scene_->column_width() * (1.0 + 1e-9);
   const double most = cells_a_particle * static_cast<double>(level.slot.size()) + 4096.0;
@@ -79,7 +79,7 @@ void SizeClasses::make_grid(Level& level, double low, double high) const {
 
 std::size_t SizeClasses::cell(const Level& level, double x, double y, double vertical) const noexcept {
   const int sx = level.lateral[0].slot(x);
-  const int sy = scene_->box.lateral_axes() == 2 ? level.lateral[1].slot(y) : 0;
+  const int sy = scene_->container.lateral_axes() == 2 ? level.lateral[1].slot(y) : 0;
   const int row = std::clamp(static_cast<int>((vertical - level.bottom) * level.inverse_height), 0, level.rows - 1);
   const auto plane = static_cast<std::size_t>(level.lateral[0].count) + 2;
   return (static_cast<std::size_t>(sy) * plane + static_cast<std::size_t>(sx)) * static_cast<std::size_t>(level.rows) +
@@ -87,7 +87,7 @@ std::size_t SizeClasses::cell(const Level& level, double x, double y, double ver
 }
 
 void SizeClasses::sort(const Cloud& cloud) {
-  const bool deep = scene_->box.dimension == 3;
+  const bool deep = scene_->container.dimension == 3;
   const auto up = [&](std::size_t i) { return deep ? cloud.z[i] : cloud.y[i]; };
   const auto count = static_cast<std::size_t>(scene_->features.size_levels);
   levels_.resize(count);
@@ -132,7 +132,7 @@ void SizeClasses::sort(const Cloud& cloud) {
 // All of the class that the seeker may touch; of its own class those behind it in the order of cells.
 void SizeClasses::look(const Seeker& seeker, const Level& level) {
   if (level.slot.empty()) return;
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   const double reach = (seeker.radius + level.largest + scene_->skin) * (1.0 + 1e-9);
   const bool plane = box.lateral_axes() == 2;
   thread_local std::vector<int> xs, ys;
@@ -165,7 +165,7 @@ void SizeClasses::look_at(const Seeker& seeker, const Level& level, LocalIndex b
   const auto n = static_cast<std::size_t>(end - begin);
   candidates_ += static_cast<std::int64_t>(n);
   if (pairs_.size() < found_ + n) pairs_.resize(std::max(2 * pairs_.size(), found_ + n + 4096));
-  const geometry::Container& box = scene_->box;
+  const geometry::Container& box = scene_->container;
   const double base = seeker.radius + scene_->skin;
   const bool periodic = scene_->features.periodic;
   Pair* out = pairs_.data() + found_;

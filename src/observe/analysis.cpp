@@ -15,7 +15,7 @@ Analysis analyse(const Specimen& pack) {
   a.particles = pack.comm.sum(std::int64_t{pack.store.owned()});
   a.mean_diameter = 2.0 * pack.scene.sizes.mean();
   a.sizes = size_match(pack.comm, pack.store, pack.scene.sizes.curve());
-  for (int axis = 0; axis < pack.scene.box.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
+  for (int axis = 0; axis < pack.scene.container.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
   a.segregation = segregation(pack);
   a.pairs = pair_distribution(pack);
   a.network = network(pack.comm, pack.store, pack.scene, pack.neighborhood);

@@ -11,7 +11,7 @@ Around::Around(const Specimen& pack, double factor) {
   const particles::Store& store = pack.store;
   const neighbor::PairList& pairs = pack.neighborhood.near_pairs();
   const auto near = [&](LocalIndex i, LocalIndex j) {
-    const Vec3 d = geometry::separation(pack.scene.box, store.position(i), store.position(j));
+    const Vec3 d = geometry::separation(pack.scene.container, store.position(i), store.position(j));
     const double reach = std::min(pack.range, factor * (store.radius(i) + store.radius(j)));
     return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
   };

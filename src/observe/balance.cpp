@@ -22,13 +22,13 @@ class Sums {
         sums_(static_cast<std::size_t>(store.owned()) * each_, 0) {}
 
   void add(LocalIndex i, const Vec3& force, int sign = 1) {
-    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->box.dimension); ++a) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->container.dimension); ++a) {
       sums_[static_cast<std::size_t>(i) * each_ + a] += sign * std::llround(force[a] / scene_->force_quantum);
     }
   }
   [[nodiscard]] double magnitude(LocalIndex i) const {
     double squared = 0.0;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->box.dimension); ++a) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene_->container.dimension); ++a) {
       const double f = static_cast<double>(sums_[static_cast<std::size_t>(i) * each_ + a]) * scene_->force_quantum;
       squared += f * f;
     }
@@ -46,7 +46,7 @@ double length(const Vec3& f) { return std::sqrt(dot(f, f)); }
 
 /// Weight and drag.
 void add_body_forces(const particles::Store& store, const scene::Scene& scene, Sums& sums) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   const input::Drag& drag = scene.in.drag;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 v = store.velocity(i);
@@ -66,7 +66,7 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
-    if (!(touch(store, scene.box, i, j).overlap > 0.0)) continue;
+    if (!(touch(store, scene.container, i, j).overlap > 0.0)) continue;
     const Vec3 force = dynamics::pair_contact(scene, law, store, i, j, stored, static_cast<std::int64_t>(p)).force;
     sums.add(i, force);
     if (j < store.owned()) sums.add(j, force, -1);
@@ -80,7 +80,7 @@ void add_walls(const particles::Store& store, const scene::Scene& scene, const d
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
-    if (!(wall_penetration(store, scene.box, i, walls.wall[w]) > 0.0)) continue;
+    if (!(wall_penetration(store, scene.container, i, walls.wall[w]) > 0.0)) continue;
     const auto entry = static_cast<std::int64_t>(w);
     const Vec3 force = dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force;
     sums.add(i, force);

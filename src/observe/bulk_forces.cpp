@@ -10,7 +10,7 @@ Forces forces(const Specimen& pack) {
   constexpr double width = 0.1, most = 8.0;    // of the mean force
   std::vector<std::vector<double>> terms(19);  // fabric, stress, normal force
   std::vector<double> normals;
-  const auto vertical = static_cast<std::size_t>(pack.scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   for (const ContactForce& c :
        contact_forces(pack.store, pack.scene, pack.neighborhood.pairs(), dynamics::stored_pairs(pack.neighborhood))) {
     if (!pack.bulk.has(c.middle[vertical])) continue;
@@ -32,7 +32,7 @@ Forces forces(const Specimen& pack) {
   result.contacts = pack.comm.sum(std::ssize(normals));
   if (result.contacts == 0) return result;
   const auto contacts = static_cast<double>(result.contacts);
-  const double volume = pack.scene.box.volume_between(pack.bulk.low, pack.bulk.high);
+  const double volume = pack.scene.container.volume_between(pack.bulk.low, pack.bulk.high);
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < 3; ++b) {
       result.fabric[a][b] = sums[3 * a + b] / contacts;

@@ -16,12 +16,12 @@ constexpr double most_columns = 0x1p20;
 ColumnNumbering numbering(const scene::Scene& scene) {
   ColumnNumbering columns;
   double width = width_in_diameters * 2.0 * scene.sizes.mean();
-  const int axes = scene.box.lateral_axes();
-  const double wanted = scene.box.floor_area() / (axes == 2 ? width * width : width);
+  const int axes = scene.container.lateral_axes();
+  const double wanted = scene.container.floor_area() / (axes == 2 ? width * width : width);
   if (wanted > most_columns) width *= axes == 2 ? std::sqrt(wanted / most_columns) : wanted / most_columns;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
-    columns.lengths[axis] = scene.box.size[axis];
-    columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.box.size[axis] / width));
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    columns.lengths[axis] = scene.container.size[axis];
+    columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.container.size[axis] / width));
   }
   return columns;
 }
@@ -62,7 +62,7 @@ std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns,
 
 std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                          const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<ColumnValue> values;
   values.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
@@ -77,13 +77,13 @@ std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, 
 
 std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Scene& scene,
                                  const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<ColumnValue> terms;
   terms.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 x = store.position(i);
-    terms.push_back({columns.column(x),
-                     geometry::volume_below(scene.box.dimension, store.radius(i), x[vertical], scene.box.height())});
+    terms.push_back({columns.column(x), geometry::volume_below(scene.container.dimension, store.radius(i), x[vertical],
+                                                               scene.container.height())});
   }
   return terms;
 }
@@ -91,10 +91,10 @@ std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Sce
 std::vector<ColumnValue> virials(const particles::Store& store, const scene::Scene& scene,
                                  const neighbor::PairList& pairs, const dynamics::StoredView& stored,
                                  const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<ColumnValue> terms;
   each_contact(store, scene, pairs, stored, [&](const ContactForce& contact) {
-    if (!(contact.middle[vertical] < scene.box.height())) return;
+    if (!(contact.middle[vertical] < scene.container.height())) return;
     terms.push_back({columns.column(contact.middle), -contact.force[vertical] * contact.branch[vertical]});
   });
   return terms;
@@ -111,10 +111,11 @@ ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, co
                   .top = tops(comm, store, scene, columns),
                   .solid_fraction = sums(comm, columns, volumes(store, scene, columns)),
                   .vertical_stress = sums(comm, columns, virials(store, scene, pairs, stored, columns))};
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     maps.widths[axis] = columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
   }
-  const double volume = scene.box.volume_between(0.0, scene.box.height()) / static_cast<double>(columns.size());
+  const double volume =
+      scene.container.volume_between(0.0, scene.container.height()) / static_cast<double>(columns.size());
   for (double& value : maps.solid_fraction) value /= volume;
   for (double& value : maps.vertical_stress) value /= volume;
   return maps;

@@ -43,12 +43,12 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
                   const neighbor::PairList& pairs, const neighbor::WallList& walls, GlobalId frozen_below) {
   Contacts result;
   result.of_particle.assign(static_cast<std::size_t>(store.owned()), 0);
-  const PairSums sums = count_pairs(store, scene.box, pairs, frozen_below, result.of_particle);
+  const PairSums sums = count_pairs(store, scene.container, pairs, frozen_below, result.of_particle);
 
   double deepest = 0.0;
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
-    const double depth = wall_penetration(store, scene.box, i, walls.wall[w]);
+    const double depth = wall_penetration(store, scene.container, i, walls.wall[w]);
     if (!(depth > 0.0)) continue;
     deepest = std::max(deepest, depth / store.radius(i));
   }

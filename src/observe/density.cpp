@@ -8,15 +8,15 @@ namespace packmpi::observe {
 
 Bulk bulk_of(const scene::Scene& scene, double surface) {
   constexpr double low = 0.2, high = 0.8;
-  const double wanted = scene.box.height();
+  const double wanted = scene.container.height();
   const double height = surface < high * wanted ? surface : wanted;
   return {low * height, high * height};
 }
 
 Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, const Bulk& bulk) {
-  const int dimension = scene.box.dimension;
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
-  const double height = scene.box.height();
+  const int dimension = scene.container.dimension;
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
+  const double height = scene.container.height();
 
   const auto count = static_cast<std::size_t>(store.owned());
   std::array<std::vector<double>, 3> solid{std::vector<double>(count), std::vector<double>(count),
@@ -30,8 +30,8 @@ Density density(const comm::Comm& comm, const particles::Store& store, const sce
     solid[2][k] = geometry::volume_below(dimension, r, centre, bulk.high);
   }
   const std::vector<double> sums = comm::exact_sums(comm, solid);
-  const double volume = scene.box.volume_between(bulk.low, bulk.high);
-  return {.phi = sums[0] / scene.box.volume_between(0.0, height),
+  const double volume = scene.container.volume_between(bulk.low, bulk.high);
+  return {.phi = sums[0] / scene.container.volume_between(0.0, height),
           .phi_bulk = volume > 0.0 ? (sums[2] - sums[1]) / volume : 0.0};
 }
 

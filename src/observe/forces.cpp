@@ -30,15 +30,15 @@ void each_contact(const particles::Store& store, const scene::Scene& scene, cons
     const bool turned = ids[static_cast<std::size_t>(i)] > ids[static_cast<std::size_t>(j)];
     if (turned) std::swap(i, j);
     if (i >= store.owned()) continue;  // the other rank reports it
-    const Touch at = touch(store, scene.box, i, j);
+    const Touch at = touch(store, scene.container, i, j);
     if (!(at.overlap > 0.0)) continue;
     const auto entry = static_cast<std::int64_t>(p);
     Vec3 force = dynamics::pair_contact(scene, law, store, pairs.first[p], pairs.second[p], stored, entry).force;
     if (turned) force = {-force[0], -force[1], -force[2]};
     const Vec3 xi = store.position(i);
-    const Vec3 branch = geometry::separation(scene.box, xi, store.position(j));
+    const Vec3 branch = geometry::separation(scene.container, xi, store.position(j));
     take({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap, force, branch,
-          middle(scene.box, xi, branch)});
+          middle(scene.container, xi, branch)});
   }
 }
 
@@ -55,12 +55,12 @@ std::vector<ContactForce> contact_forces(const particles::Store& store, const sc
 double floor_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                    const neighbor::WallList& walls) {
   const dynamics::Law law = dynamics::make_law(scene);
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> forces;
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     if (walls.wall[w] != neighbor::Wall::floor) continue;
     const LocalIndex i = walls.particle[w];
-    const double overlap = wall_penetration(store, scene.box, i, neighbor::Wall::floor);
+    const double overlap = wall_penetration(store, scene.container, i, neighbor::Wall::floor);
     if (!(overlap > 0.0)) continue;
     const double up = dynamics::wall_contact(scene, law, store, i, neighbor::Wall::floor).force[vertical];
     forces.push_back(up);  // friction on a plane has no part in it

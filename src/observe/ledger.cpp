@@ -27,7 +27,7 @@ double squared_spin(const particles::Store& store, const double* record) {
 /// Terms of the moving particles; the largest squared speed.
 double add_particles(const particles::Store& store, const scene::Scene& scene, Terms& terms) {
   const auto count = static_cast<std::size_t>(store.owned());
-  const auto dimension = static_cast<std::size_t>(scene.box.dimension);
+  const auto dimension = static_cast<std::size_t>(scene.container.dimension);
   for (std::size_t t = kinetic; t < momentum_x + dimension; ++t) terms[t].resize(count);
   if (!scene.features.rotation) terms[rotational].clear();
   if (!scene.features.graded) terms[weighted_height].clear();
@@ -68,7 +68,7 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p];
     const LocalIndex j = pairs.second[p];
-    const double overlap = touch(store, scene.box, i, j).overlap;
+    const double overlap = touch(store, scene.container, i, j).overlap;
     if (!(overlap > 0.0)) continue;
     if (!is_counted_here(store, i, j, frozen_below)) continue;
     const double ri = store.radius(i);
@@ -86,7 +86,7 @@ void add_walls(const particles::Store& store, const scene::Scene& scene, const d
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
-    const double overlap = wall_penetration(store, scene.box, i, walls.wall[w]);
+    const double overlap = wall_penetration(store, scene.container, i, walls.wall[w]);
     if (!(overlap > 0.0)) continue;
     terms.push_back(elastic_energy(law.wall, store.radius(i), overlap));
     if (!scene.features.memory) continue;
@@ -118,7 +118,7 @@ Ledger ledger(const comm::Comm& comm, const particles::Store& store, const scene
 
 double energy_of(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, GlobalId from,
                  GlobalId to) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> terms;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const GlobalId id = store.ids()[static_cast<std::size_t>(i)];

@@ -13,7 +13,7 @@ namespace {
 
 // Volume of the cell of particle i [m3], 2D: [m2]; none if particles beyond the range might cut it.
 std::optional<double> cell_volume(const Specimen& pack, LocalIndex i, std::span<const LocalIndex> neighbours) {
-  const geometry::Container& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.container;
   const bool plane = box.dimension == 2;
   const Vec3 x = pack.store.position(i);
   const double r = pack.store.radius(i);
@@ -46,7 +46,7 @@ std::optional<double> cell_volume(const Specimen& pack, LocalIndex i, std::span<
 LocalDensity local_density(const Specimen& pack) {
   constexpr double width = 0.01;
   const Around around(pack, std::numeric_limits<double>::infinity());
-  const auto vertical = static_cast<std::size_t>(pack.scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   std::vector<std::vector<double>> terms(2);
   std::vector<std::int64_t> counts(102, 0);  // bins of width, then left out
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
@@ -56,7 +56,7 @@ LocalDensity local_density(const Specimen& pack) {
       ++counts.back();
       continue;
     }
-    const double share = geometry::volume(pack.scene.box.dimension, pack.store.radius(i)) / *cell;
+    const double share = geometry::volume(pack.scene.container.dimension, pack.store.radius(i)) / *cell;
     terms[0].push_back(share);
     terms[1].push_back(share * share);
     ++counts[static_cast<std::size_t>(std::clamp(share / width, 0.0, 100.0))];

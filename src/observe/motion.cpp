@@ -22,7 +22,7 @@ double squared_spin(const particles::Store& store, LocalIndex i) {
 }  // namespace
 
 Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   const auto count = static_cast<std::size_t>(store.owned());
   std::array<std::vector<double>, 3> terms{std::vector<double>(count), std::vector<double>(count),
                                            std::vector<double>(count)};  // kinetic energy, height, mass

@@ -75,8 +75,8 @@ class Holding {
 
 Network network(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                 const neighbor::Neighborhood& neighborhood) {
-  const int needed = scene.box.dimension + (scene.in.jamming.gravity > 0.0 ? 0 : 1);
-  Holding holding(store, scene.box, neighborhood);
+  const int needed = scene.container.dimension + (scene.in.jamming.gravity > 0.0 ? 0 : 1);
+  Holding holding(store, scene.container, neighborhood);
   const auto sums = [&] {
     const Holding::Counts mine = holding.counts(needed);
     std::array<std::int64_t, 3> all{mine.held, mine.loose, mine.contacts};

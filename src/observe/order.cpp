@@ -14,7 +14,7 @@ constexpr double first_shell = 1.2071067811865475;  // (1 + sqrt 2) / 2
 std::vector<Vec3> bonds(const Specimen& pack, LocalIndex i, std::span<const LocalIndex> neighbours) {
   std::vector<Vec3> d;
   for (const LocalIndex j : neighbours) {
-    d.push_back(geometry::separation(pack.scene.box, pack.store.position(i), pack.store.position(j)));
+    d.push_back(geometry::separation(pack.scene.container, pack.store.position(i), pack.store.position(j)));
   }
   return d;
 }
@@ -89,8 +89,8 @@ Lattice lattice_of(const Specimen& pack, std::span<const LocalIndex> neighbours,
 
 Order order(const Specimen& pack) {
   const Around around(pack, first_shell);
-  const auto vertical = static_cast<std::size_t>(pack.scene.box.vertical());
-  const bool plane = pack.scene.box.dimension == 2;
+  const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
+  const bool plane = pack.scene.container.dimension == 2;
   std::vector<std::vector<double>> terms(3);  // 2D: |psi|, its parts; 3D: q4, q6
   std::array<std::int64_t, 3> counts{};       // counted, fcc, hcp
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {

@@ -28,7 +28,7 @@ struct Interior {
 };
 
 Interior interior_of(const Specimen& pack, double range) {
-  const geometry::Container& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.container;
   const auto v = static_cast<std::size_t>(box.vertical());
   Interior in;
   for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
@@ -49,7 +49,7 @@ double shell(int dimension, double inner, double outer) {
 }  // namespace
 
 PairDistribution pair_distribution(const Specimen& pack) {
-  const int dimension = pack.scene.box.dimension;
+  const int dimension = pack.scene.container.dimension;
   const double diameter = 2.0 * pack.scene.sizes.mean();
   PairDistribution result;
   result.g.width = 1.0 / bins_a_diameter;
@@ -63,7 +63,7 @@ PairDistribution pair_distribution(const Specimen& pack) {
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p], j = pairs.second[p];
     const Vec3 xi = store.position(i), xj = store.position(j);
-    const Vec3 d = geometry::separation(pack.scene.box, xi, xj);
+    const Vec3 d = geometry::separation(pack.scene.container, xi, xj);
     const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     const auto bin = static_cast<std::size_t>(distance / diameter * bins_a_diameter);
     if (bin >= bins) continue;

@@ -19,7 +19,7 @@ std::size_t bins_in(double length, double width) {
 }  // namespace
 
 Profile density_profile(const Specimen& pack, int axis) {
-  const geometry::Container& box = pack.scene.box;
+  const geometry::Container& box = pack.scene.container;
   const auto a = static_cast<std::size_t>(axis);
   const bool vertical = axis == box.vertical();
   const double length = vertical ? top(pack.comm, pack.store, pack.scene) : box.size[a];
@@ -51,7 +51,7 @@ Profile density_profile(const Specimen& pack, int axis) {
 }
 
 Segregation segregation(const Specimen& pack) {
-  const auto vertical = static_cast<std::size_t>(pack.scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   const double width = diameters_a_layer * 2.0 * pack.scene.sizes.mean();
   Segregation result;
   const std::size_t bins = bins_in(top(pack.comm, pack.store, pack.scene), width);

@@ -14,11 +14,11 @@ double upward_force(const comm::Comm& comm, const particles::Store& store, const
                     const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
   const neighbor::WallList& walls = neighborhood.walls();
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> forces;
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const LocalIndex i = walls.particle[w];
-    if (!(wall_penetration(store, scene.box, i, walls.wall[w]) > 0.0)) continue;
+    if (!(wall_penetration(store, scene.container, i, walls.wall[w]) > 0.0)) continue;
     const auto entry = static_cast<std::int64_t>(w);
     forces.push_back(dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force[vertical]);
   }
@@ -28,7 +28,7 @@ double upward_force(const comm::Comm& comm, const particles::Store& store, const
 /// What floor and walls must bear of particles at rest [N].
 double load(const scene::Scene& scene, const Motion& motion, double particles) {
   const input::Drag& drag = scene.in.drag;
-  const double lift = drag.coefficient * drag.fluid_velocity[static_cast<std::size_t>(scene.box.vertical())];
+  const double lift = drag.coefficient * drag.fluid_velocity[static_cast<std::size_t>(scene.container.vertical())];
   return motion.mass * scene.in.jamming.gravity - particles * lift;
 }
 

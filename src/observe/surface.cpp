@@ -15,9 +15,9 @@ namespace {
 ColumnNumbering make_columns(const scene::Scene& scene) {
   ColumnNumbering columns;
   const double width = 2.0 * scene.sizes.largest();
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
-    columns.lengths[axis] = scene.box.size[axis];
-    columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.box.size[axis] / width));
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    columns.lengths[axis] = scene.container.size[axis];
+    columns.counts[axis] = std::max(std::int64_t{1}, static_cast<std::int64_t>(scene.container.size[axis] / width));
   }
   return columns;
 }
@@ -42,7 +42,7 @@ void keep_highest(std::vector<Top>& tops) {
 /// Of the columns that this rank has particles in.
 std::vector<Top> highest_tops(std::span<const particles::Store* const> stores, const scene::Scene& scene,
                               const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<Top> tops;
   for (const particles::Store* store : stores) {
     for (LocalIndex i = 0; i < store->owned(); ++i) {

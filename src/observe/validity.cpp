@@ -21,7 +21,7 @@ Validity validity(const comm::Comm& comm, const particles::Store& store, const s
   std::array<std::int64_t, 3> counts{store.owned(), 0, 0};
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     if (!is_finite(store, i)) ++counts[1];
-    if (scene.box.beyond(store.position(i)) > 0.0) ++counts[2];
+    if (scene.container.beyond(store.position(i)) > 0.0) ++counts[2];
   }
   comm.sum(counts);
   return {.found = counts[0], .non_finite = counts[1], .outside = counts[2]};

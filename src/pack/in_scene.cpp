@@ -12,11 +12,11 @@ namespace {
 
 void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
   constexpr double highest = 10.0;  // of the height asked for and a layer
-  if (rows.dimension != scene.box.dimension) {
-    refuse_scene(fmt::format("it is a pack in {}D of a scene in {}D", rows.dimension, scene.box.dimension));
+  if (rows.dimension != scene.container.dimension) {
+    refuse_scene(fmt::format("it is a pack in {}D of a scene in {}D", rows.dimension, scene.container.dimension));
   }
   const double largest = scene.sizes.largest();
-  const auto up = static_cast<std::size_t>(scene.box.vertical());
+  const auto up = static_cast<std::size_t>(scene.container.vertical());
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
     if (rows.radius[k] > largest) {
       refuse_scene(fmt::format("particle {} has the radius {} m, the largest of its scene is {} m", rows.id[k],
@@ -24,7 +24,7 @@ void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double x = rows.position[k][axis];
-      const double size = axis > up ? 0.0 : scene.box.size[axis];
+      const double size = axis > up ? 0.0 : scene.container.size[axis];
       const double high = axis == up ? highest * (size + scene.in.layers.thickness) : size + largest;
       if (x >= -largest && x <= high) continue;
       refuse_scene(fmt::format("particle {} is at {} = {} m, far outside of its scene", rows.id[k], "xyz"[axis], x));

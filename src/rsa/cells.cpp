@@ -10,9 +10,9 @@ namespace {
 
 // About four cells a particle where the layer is thin on particles; they need not be flatter than the layer is thick.
 double cell_width(const scene::Scene& scene, const LayerRegion& region, std::int64_t asked, double diameter) {
-  const double floor = scene.box.floor_area() / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
+  const double floor = scene.container.floor_area() / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
   const double share = floor * region.thickness;
-  const bool deep = scene.box.dimension == 3;
+  const bool deep = scene.container.dimension == 3;
   double width = deep ? elementary::cube_root(share) : std::sqrt(share);
   if (width > region.thickness) width = deep ? std::sqrt(floor) : floor;  // one cell high
   return std::max(diameter, width);
@@ -22,7 +22,7 @@ double cell_width(const scene::Scene& scene, const LayerRegion& region, std::int
 
 CellGrid::CellGrid(const scene::Scene& scene, const scene::Ownership& ownership, const LayerRegion& region,
                    std::int64_t asked, double diameter)
-    : lateral_(scene.box.lateral_axes()) {
+    : lateral_(scene.container.lateral_axes()) {
   const double width = cell_width(scene, region, asked, diameter * (1.0 + slack));
   const double margin = 2.0 * scene.sizes.largest() * (1.0 + slack);
   for (int axis = 0; axis < lateral_; ++axis) {

@@ -35,7 +35,7 @@ class Tally {
     std::int64_t mine = 0;
     for (std::int64_t k = begin; k < end; ++k) {
       const double radius = scene_->sizes.draw(layer_, static_cast<std::uint64_t>(k));
-      volumes.push_back(to_quanta(geometry::volume(scene_->box.dimension, radius)));
+      volumes.push_back(to_quanta(geometry::volume(scene_->container.dimension, radius)));
       mine += volumes.back();
     }
     std::int64_t reached = none;
@@ -62,8 +62,8 @@ class Tally {
 }  // namespace
 
 std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
-  const double target = scene.in.layers.fraction * scene.box.floor_area() * region.thickness;
-  const int power = scene.box.dimension;
+  const double target = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
+  const int power = scene.container.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
   if (!(target > 0.0) || !(mean > 0.0))
     comm::fail_together(comm, ExitCode::bad_input, "layers: fraction, thickness and radii must be positive");

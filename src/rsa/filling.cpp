@@ -15,8 +15,8 @@ Filling::Filling(const comm::Comm& comm, const scene::Scene& scene, const scene:
       sampler_(scene, ownership, region),
       grid_(scene, ownership, region, asked),
       border_(ownership, comm.rank(), scene.sizes.largest()),
-      placed_(grid_, Metric(scene.box)),
-      conflicts_(comm, grid_, Metric(scene.box), border_, sampler_, placed_) {
+      placed_(grid_, Metric(scene.container)),
+      conflicts_(comm, grid_, Metric(scene.container), border_, sampler_, placed_) {
   const auto bound = [&](std::int64_t rank) {
     return asked / comm.size() * rank + std::min(rank, asked % comm.size());
   };
@@ -84,7 +84,7 @@ void Filling::append(const Trial& trial, particles::Store& store) {
   const auto& [centre, radius] = trial.sphere;
   const input::Layers& layers = scene_.in.layers;
   store.add(region_.first_id + static_cast<GlobalId>(trial.particle), centre, radius, layers.velocity, layers.spin);
-  volumes_.push_back(geometry::volume(scene_.box.dimension, radius));
+  volumes_.push_back(geometry::volume(scene_.container.dimension, radius));
 }
 
 }  // namespace packmpi::rsa

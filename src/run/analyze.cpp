@@ -21,9 +21,9 @@ constexpr double shell_in_largest = 1.25;  // largest diameters: the first shell
 scene::Scene reaching_scene(const std::string& text, const std::string& path, double& range) {
   scene::Scene scene = scene::build(input::parse(text, path, {}));
   range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), shell_in_largest * 2.0 * scene.sizes.largest());
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     // A periodic axis takes three interaction ranges.
-    if (scene.box.periodic[axis]) range = std::min(range, scene.box.size[axis] / 3.001 - scene.skin);
+    if (scene.container.periodic[axis]) range = std::min(range, scene.container.size[axis] / 3.001 - scene.skin);
   }
   scene.in.near_field = input::NearField{.alpha1 = 0.0, .beta1 = 0.0, .alpha2 = 0.0, .beta2 = 0.0, .cutoff = range};
   scene.reach = std::max(2.0 * scene.sizes.largest(), range);
@@ -63,8 +63,8 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
       observe::analyse(observe::specimen_of(comm, scene, bed.store, bed.neighborhood, range));
   const std::filesystem::path pack(path);
   disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
-                   report::to_json(analysis, scene.box.dimension, seal));
-  return report::to_table(analysis, scene.box.dimension);
+                   report::to_json(analysis, scene.container.dimension, seal));
+  return report::to_table(analysis, scene.container.dimension);
 }
 
 }  // namespace packmpi::run

@@ -59,11 +59,12 @@ void remove_checkpoints(const Files& files) {
 }
 
 double expected_particles(const scene::Scene& scene) {
-  const double height = scene.box.height() + scene.in.layers.thickness;
-  const double solid = (scene.box.dimension == 3 ? densest : 0.91) * scene.box.floor_area() * height;
-  const double mean = geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  const double height = scene.container.height() + scene.in.layers.thickness;
+  const double solid = (scene.container.dimension == 3 ? densest : 0.91) * scene.container.floor_area() * height;
+  const double mean =
+      geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
   const input::Layers& layers = scene.in.layers;
-  const double a_layer = layers.fraction * scene.box.floor_area() * layers.thickness / mean + 1.0;
+  const double a_layer = layers.fraction * scene.container.floor_area() * layers.thickness / mean + 1.0;
   const double full = solid / mean;
   return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;
 }

@@ -68,10 +68,10 @@ void Journal::moment(double share) {
 // Particle-steps still to do over those done, both reckoned from the layers, at the rate so far.
 double Journal::seconds_left(double share) const {
   const input::Input& in = bed_.scene.in;
-  const double asked = bed_.scene.box.height();
-  const double per_layer = layers_done_ > 1
-                               ? height_ / layers_done_
-                               : in.layers.fraction * in.layers.thickness / usual_fraction(bed_.scene.box.dimension);
+  const double asked = bed_.scene.container.height();
+  const double per_layer =
+      layers_done_ > 1 ? height_ / layers_done_
+                       : in.layers.fraction * in.layers.thickness / usual_fraction(bed_.scene.container.dimension);
   const double begun = layers_done_ + (relaxing_ ? 0.0 : 1.0);
   double layers = std::max(std::ceil(asked / per_layer), begun);
   if (in.layers.maximum > 0) layers = std::min(layers, static_cast<double>(in.layers.maximum));

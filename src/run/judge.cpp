@@ -24,7 +24,7 @@ double time_of_fall(const input::Input& in) {
 // Why a bed moves on, and what to change: the first of these that is so.
 std::string why_it_moves(const scene::Scene& scene) {
   const input::Input& in = scene.in;
-  const auto vertical = static_cast<std::size_t>(scene.box.vertical());
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   const double lift = in.drag.coefficient * in.drag.fluid_velocity[vertical];
   const double weight = input::mass(in.particles, scene.sizes.smallest()) * in.jamming.gravity;
   if (lift > 0.0 && lift >= weight) {

@@ -131,7 +131,7 @@ void Keeper::write() {
                              .effective_input = bed_.scene.in.effective,
                              .version = std::string(version()),
                              .git = std::string(git_id()),
-                             .dimension = bed_.scene.box.dimension,
+                             .dimension = bed_.scene.container.dimension,
                              .rotation = bed_.scene.features.rotation,
                              .progress = bed_.progress};
   const std::array<const particles::Store*, 2> stores{&bed_.store, &bed_.neighborhood.frozen()};

@@ -50,7 +50,7 @@ void insert_layer(Bed& bed, Keeper& keeper) {
   row.attempts = got.trials;
   row.total = at.count;
   row.target_fraction = scene.in.layers.fraction;
-  row.achieved_fraction = got.solid_volume / (scene.box.floor_area() * region.thickness);
+  row.achieved_fraction = got.solid_volume / (scene.container.floor_area() * region.thickness);
   row.region_bottom = region.bottom;
 }
 
@@ -135,7 +135,7 @@ void fill(Bed& bed, Journal& journal, Keeper& keeper) {
   pack::Progress& at = bed.progress;
   const std::int64_t most = scene::most_layers(bed.scene.in);
   const auto more = [&] {
-    return final_height(bed.scene, at) < bed.scene.box.height() && std::ssize(at.layers) < most;
+    return final_height(bed.scene, at) < bed.scene.container.height() && std::ssize(at.layers) < most;
   };
   while (at.now.phase != pack::Phase::insertion || more()) {
     if (at.now.phase == pack::Phase::relaxation) {

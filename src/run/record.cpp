@@ -52,9 +52,9 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.scene_file = scene.in.file;
   record.effective_input = scene.in.effective;
   record.seed = scene.in.seed;
-  record.dimension = scene.box.dimension;
-  record.size = scene.box.size;
-  record.target_height = scene.box.height();
+  record.dimension = scene.container.dimension;
+  record.size = scene.container.size;
+  record.target_height = scene.container.height();
   record.target_fraction = scene.in.layers.fraction;
   record.target_mean_radius = scene.sizes.mean();
   record.target_sd_radius = target_sd(scene);

@@ -51,7 +51,7 @@ Shape shape_of(const Sizes& sizes) {
 
 // Of equal particles in the bulk, times this.
 double by_sizes(const Scene& scene, const Shape& shape) {
-  if (scene.box.dimension == 3) {
+  if (scene.container.dimension == 3) {
     const double added =
         by_deviation * shape.deviation + by_skewness * shape.skewness * shape.deviation * shape.deviation;
     return 1.0 + std::clamp(added, 0.0, most_added);
@@ -65,23 +65,23 @@ double by_borders(const Scene& scene) {
   const double mean = 2.0 * scene.sizes.mean();
   const double largest = 2.0 * scene.sizes.largest();
   double left = 1.0;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
-    if (!scene.box.periodic[axis]) left -= missing_at_walls * mean / scene.box.size[axis];
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    if (!scene.container.periodic[axis]) left -= missing_at_walls * mean / scene.container.size[axis];
   }
   const double missing = scene.sizes.equal() ? missing_at_surface : missing_at_uneven_surface;
-  left *= 1.0 - std::min(0.5, missing * largest / scene.box.height());
+  left *= 1.0 - std::min(0.5, missing * largest / scene.container.height());
   return std::max(0.5, left);
 }
 
 double mean_volume(const Scene& scene) {
-  return geometry::volume(scene.box.dimension, 1.0) * scene.sizes.curve().moment(scene.box.dimension);
+  return geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
 }
 
 // Mean square of the particles' volume over the square of its mean.
 double uneven_volumes(const Scene& scene) {
   if (scene.sizes.equal()) return 1.0;
-  const double mean = scene.sizes.curve().moment(scene.box.dimension);
-  return scene.sizes.curve().moment(2 * scene.box.dimension) / (mean * mean);
+  const double mean = scene.sizes.curve().moment(scene.container.dimension);
+  return scene.sizes.curve().moment(2 * scene.container.dimension) / (mean * mean);
 }
 
 // How deep a pile without walls presses as much on its floor as this one does (Janssen 1895): lateral over vertical
@@ -89,11 +89,11 @@ double uneven_volumes(const Scene& scene) {
 double pressing_height(const Scene& scene) {
   constexpr double lateral = 0.5;  // share of the vertical stress
   double walls_over_area = 0.0;    // [1/m]
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.box.lateral_axes()); ++axis) {
-    if (!scene.box.periodic[axis]) walls_over_area += 2.0 / scene.box.size[axis];
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    if (!scene.container.periodic[axis]) walls_over_area += 2.0 / scene.container.size[axis];
   }
   const double most = static_cast<double>(most_layers(scene.in)) * rise_of_layer(scene, expected_fraction(scene).value);
-  const double height = std::min(scene.box.height(), most);
+  const double height = std::min(scene.container.height(), most);
   const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
   return rate * height > 1e-6 ? -std::expm1(-rate * height) / rate : height;
 }
@@ -102,7 +102,7 @@ double pressing_height(const Scene& scene) {
 
 BedFraction expected_fraction(const Scene& scene) {
   const bool spin = scene.in.dynamics.rotation;
-  const bool flat = scene.box.dimension == 2;
+  const bool flat = scene.container.dimension == 2;
   const ByFriction& equal = flat ? (spin ? discs : discs_without_spin) : (spin ? spheres : spheres_without_spin);
   const Shape shape = shape_of(scene.sizes);
   const double friction = scene.in.contact.friction;
@@ -112,7 +112,7 @@ BedFraction expected_fraction(const Scene& scene) {
 }
 
 std::int64_t particles_a_layer(const Scene& scene) {
-  const double solid = scene.in.layers.fraction * scene.box.floor_area() * scene.in.layers.thickness;
+  const double solid = scene.in.layers.fraction * scene.container.floor_area() * scene.in.layers.thickness;
   const double needed = solid / mean_volume(scene);
   // The last one overshoots: the larger a particle, the more often it is the last, so by half of its mean square.
   const double overshoot = 0.5 * uneven_volumes(scene);
@@ -124,11 +124,11 @@ double deviation_of_count(const Scene& scene, double particles) {
 }
 
 double rise_of_layer(const Scene& scene, double fraction) {
-  return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.box.floor_area() * fraction);
+  return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.container.floor_area() * fraction);
 }
 
 std::int64_t expected_layers(const Scene& scene, double fraction) {
-  const double layers = std::ceil(scene.box.height() / rise_of_layer(scene, fraction) - 1e-9);
+  const double layers = std::ceil(scene.container.height() / rise_of_layer(scene, fraction) - 1e-9);
   return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene.in));
 }
 
@@ -136,7 +136,7 @@ double expected_overlap(const Scene& scene, double youngs_modulus) {
   // A contact bears sigma 4 pi r^2 / (phi Z) in space, of Z contacts a particle; in the plane sigma 2 pi r / (phi Z).
   constexpr double contacts = 5.0, mean_over_depth = 0.6;
   constexpr double uneven = 0.9;  // mean of f^(2/3) over that of the mean force, where forces are as uneven as in packs
-  const bool flat = scene.box.dimension == 2;
+  const bool flat = scene.container.dimension == 2;
   const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing_height(scene);
   const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
                          (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);

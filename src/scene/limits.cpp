@@ -47,7 +47,7 @@ double largest_force(const Scene& scene) {
   const double k = 4.0 / 3.0 * 2.0 * input::pair_modulus(in.particles, in.particles.youngs_modulus) *
                    std::sqrt(r);  // against a rigid wall: r* = r, m* = m
   const double m = input::mass(in.particles, r);
-  const double drop = scene.box.height() + 2.0 * in.layers.thickness;
+  const double drop = scene.container.height() + 2.0 * in.layers.thickness;
   const double speed = input::impact_speed(in, drop);
   const double square = 5.0 * m * speed * speed / (4.0 * k);
   const double overlap = square > 0.0 ? elementary::power(square, 0.4) : 0.0;
@@ -74,7 +74,7 @@ double near_speed(const Scene& scene) {
   if (!scene.in.near_field) return 0.0;
   const double r = scene.sizes.smallest();
   const double cutoff = scene.in.near_field->cutoff;
-  const double neighbors = elementary::power(cutoff / r, scene.box.dimension);
+  const double neighbors = elementary::power(cutoff / r, scene.container.dimension);
   return std::sqrt(2.0 * largest_near_force(scene) * cutoff * neighbors / input::mass(scene.in.particles, r));
 }
 

@@ -75,14 +75,14 @@ void check_drag(const input::Input& in, const Sizes& sizes, double time_step) {
 }
 
 void check_periodic(const input::Input& in, const Scene& scene) {
-  for (int axis = 0; axis < scene.box.lateral_axes(); ++axis) {
+  for (int axis = 0; axis < scene.container.lateral_axes(); ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double least = 3.0 * scene.column_width();
-    if (scene.box.periodic[a] && scene.box.size[a] < least) {
+    if (scene.container.periodic[a] && scene.container.size[a] < least) {
       refuse(in, fmt::format(
                      "container.size: a periodic axis must be at least {:.6g} m here (three interaction ranges), so "
                      "that no particle meets two images of another; axis {} is {:g} m",
-                     least, "xy"[a], scene.box.size[a]));
+                     least, "xy"[a], scene.container.size[a]));
     }
   }
 }
@@ -129,9 +129,9 @@ Features features_of(const input::Input& in) {
 // Columns beyond four a particle of a layer would mostly be empty: in a wide box they are made wider instead.
 std::int64_t most_columns(const Scene& scene) {
   constexpr double always = 0x1p16, countable = 0x1p30, a_particle = 4.0;
-  const int power = scene.box.dimension;
+  const int power = scene.container.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
-  const double particles = scene.in.layers.fraction * scene.box.floor_area() * scene.in.layers.thickness / mean;
+  const double particles = scene.in.layers.fraction * scene.container.floor_area() * scene.in.layers.thickness / mean;
   const double wanted = a_particle * particles;
   return static_cast<std::int64_t>(wanted < countable ? std::max(wanted, always) : countable);  // NaN: countable
 }
@@ -143,7 +143,7 @@ int size_levels(const Sizes& sizes) {
   return levels;
 }
 
-geometry::Container box_of(const input::Container& container) {
+geometry::Container container_of(const input::Container& container) {
   geometry::Container box;
   box.dimension = container.dimension;
   std::ranges::copy(container.size, box.size.begin());
@@ -162,7 +162,7 @@ double safe_time_step(const input::Input& in, const Sizes& sizes) {
 Scene build(const input::Input& in) {
   Scene scene;
   scene.in = in;
-  scene.box = box_of(in.container);
+  scene.container = container_of(in.container);
   scene.features = features_of(in);
   scene.sizes = Sizes(in.particles.radius, in.seed);
   scene.reach = 2.0 * scene.sizes.largest();

@@ -19,7 +19,7 @@ struct Stage {
 /// The scene. `in` is what was asked; the rest is derived from it.
 struct Scene {
   input::Input in;
-  geometry::Container box;
+  geometry::Container container;
   Features features;
   Sizes sizes;              ///< the size distribution: radius of (layer, particle), bounds
   double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
@@ -35,7 +35,7 @@ struct Scene {
   /// Width the columns of the lateral grid need at least: reach + skin [m].
   [[nodiscard]] double column_width() const noexcept { return reach + skin; }
   /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns.
-  [[nodiscard]] geometry::ColumnGrid columns() const { return {box, column_width(), most_columns}; }
+  [[nodiscard]] geometry::ColumnGrid columns() const { return {container, column_width(), most_columns}; }
   /// The final stage, once it is hard.
   [[nodiscard]] Stage last() const noexcept { return {time_step, in.particles.youngs_modulus}; }
 };

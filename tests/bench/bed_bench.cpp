@@ -96,7 +96,7 @@ void lay_out(run::Bed& bed, const std::vector<Grain>& brick, int tiles) {
 // The bed as a LAMMPS data file of style sphere.
 void write_data(const run::Bed& bed, const char* path) {
   std::ofstream out(path);
-  const double side = bed.scene.box.size[0];
+  const double side = bed.scene.container.size[0];
   out << "bed of packmpi: units si\n\n" << bed.progress.count << " atoms\n1 atom types\n\n";
   out << fmt::format("-0.005 {0} xlo xhi\n-0.005 {0} ylo yhi\n-0.005 0.8 zlo zhi\n\nAtoms\n\n", side + 0.005);
   for (LocalIndex i = 0; i < bed.store.owned(); ++i) {

@@ -35,7 +35,7 @@ scene::Scene rough_scene(const Shape& shape, double friction, double rolling = 0
   return s;
 }
 
-std::size_t up(const scene::Scene& s) { return static_cast<std::size_t>(s.box.vertical()); }
+std::size_t up(const scene::Scene& s) { return static_cast<std::size_t>(s.container.vertical()); }
 
 /// A sphere at rest on a floor under gravity turned by atan(slope), at the depth of its load.
 World on_slope(scene::Scene s, double slope, double radius) {
@@ -253,10 +253,10 @@ class Rig {
     Vec3 x{50.0, 50.0, 50.0};
     x[0] += aside;
     x[v] = wall_ ? r - overlap : x[v] + 2.0 * r - overlap;
-    if (world_.scene().box.dimension == 2) x[2] = 0.0;
+    if (world_.scene().container.dimension == 2) x[2] = 0.0;
     if (!wall_) hold(0);
     double* record = world_.store().record(last_);
-    for (int a = 0; a < world_.scene().box.dimension; ++a) {
+    for (int a = 0; a < world_.scene().container.dimension; ++a) {
       const auto axis = static_cast<std::size_t>(a);
       record[a] = x[axis];
       record[world_.store().layout().velocity + a] = started_ ? (x[axis] - before_[axis]) / dt : 0.0;
@@ -281,7 +281,7 @@ class Rig {
  private:
   void hold(LocalIndex i) {
     double* record = world_.store().record(i);
-    for (int a = 0; a < world_.scene().box.dimension; ++a) {
+    for (int a = 0; a < world_.scene().container.dimension; ++a) {
       record[a] = 50.0;
       record[world_.store().layout().velocity + a] = 0.0;
     }

@@ -98,7 +98,7 @@ TEST(NearField, EndsAtTheCutoff) {
 TEST(NearField, ReachesThroughPeriodicFaces) {
   scene::Scene s = near_scene(3, false, {1e-3, 2.0, 0.0, 0.0, 0.2});
   s.features.periodic = true;
-  s.box.periodic = {true, false};
+  s.container.periodic = {true, false};
   const Sums sums = of_pair(s, {0.02, 1.0, 1.0}, {99.97, 1.0, 1.0});  // distance 0.05 across x = 0
   EXPECT_NEAR(static_cast<double>(sums.quanta[0]) * s.force_quantum, -0.4, 1e-8);
 }

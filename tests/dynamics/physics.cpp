@@ -67,8 +67,8 @@ Impact collide(World& world) {
 Impact head_on(const scene::Scene& s, double v, World* after = nullptr) {
   const double r = s.sizes.largest();
   World world(s);
-  world.add(vector(s.box.dimension, 50.0 - r, 50.0), speed(s.box.dimension, v, 0.0));
-  world.add(vector(s.box.dimension, 50.0 + r, 50.0), speed(s.box.dimension, -v, 0.0));
+  world.add(vector(s.container.dimension, 50.0 - r, 50.0), speed(s.container.dimension, v, 0.0));
+  world.add(vector(s.container.dimension, 50.0 + r, 50.0), speed(s.container.dimension, -v, 0.0));
   const Impact impact = collide(world);
   if (after != nullptr) *after = std::move(world);
   return impact;
@@ -176,7 +176,8 @@ scene::Scene rough_scene(const Shape& shape, double friction) {
 /// r omega of the first particle about the axis that rolling along +x turns it.
 double rolling_speed(const World& world) {
   const Vec3 omega = world.store().spin(0);
-  return world.scene().box.dimension == 3 ? omega[1] * world.store().radius(0) : -omega[2] * world.store().radius(0);
+  return world.scene().container.dimension == 3 ? omega[1] * world.store().radius(0)
+                                                : -omega[2] * world.store().radius(0);
 }
 
 TEST(Physics, ObliqueImpactInGrossSlip) {  // Chung & Ooi (2011), tests 4 to 6
@@ -221,7 +222,7 @@ World resting_sphere(scene::Scene s, double sliding) {
   const double k = 4.0 / 3.0 * 1e8 / (1.0 - 0.0625) * std::sqrt(r);
   World world(s);
   const double overlap = std::pow(mass_of(s, r) * 2.0 / k, 2.0 / 3.0);
-  world.add(vector(s.box.dimension, 50.0, r - overlap), speed(s.box.dimension, sliding, 0.0));
+  world.add(vector(s.container.dimension, 50.0, r - overlap), speed(s.container.dimension, sliding, 0.0));
   return world;
 }
 

@@ -31,12 +31,12 @@ std::vector<Ball> cloud(const scene::Scene& scene, std::size_t count) {
   for (Ball& b : balls) {
     b.r = u(scene.sizes.smallest(), scene.sizes.largest());
     if (scene.sizes.equal()) b.r = scene.sizes.largest();
-    for (int a = 0; a < scene.box.dimension; ++a) {
+    for (int a = 0; a < scene.container.dimension; ++a) {
       const auto axis = static_cast<std::size_t>(a);
-      b.x[axis] = u(0.0, scene.box.size[axis]);
+      b.x[axis] = u(0.0, scene.container.size[axis]);
       b.v[axis] = u(-1.0, 1.0);
     }
-    b.omega = scene.box.dimension == 3 ? Vec3{u(-1, 1), u(-1, 1), u(-1, 1)} : Vec3{0, 0, u(-1, 1)};
+    b.omega = scene.container.dimension == 3 ? Vec3{u(-1, 1), u(-1, 1), u(-1, 1)} : Vec3{0, 0, u(-1, 1)};
   }
   return balls;
 }
@@ -104,7 +104,7 @@ std::set<Pair> expected(const World& w, Cut cut) {
     for (std::size_t j = i + 1; j < w.balls.size(); ++j) {
       const Pair pair{static_cast<GlobalId>(i), static_cast<GlobalId>(j)};
       if (!mine.contains(pair.first) && !mine.contains(pair.second)) continue;
-      if (distance(w.scene.box, w.balls[i].x, w.balls[j].x) < cut(w.balls[i], w.balls[j])) pairs.insert(pair);
+      if (distance(w.scene.container, w.balls[i].x, w.balls[j].x) < cut(w.balls[i], w.balls[j])) pairs.insert(pair);
     }
   }
   return pairs;
@@ -234,9 +234,9 @@ double move(World& w, double dt) {
       double& v = record[layout.velocity + a];
       double& x = record[a];
       x += v * dt;
-      if (a < w.scene.box.lateral_axes() && w.scene.box.periodic[axis]) {
-        x = geometry::wrap(x, w.scene.box.size[axis]);
-      } else if (x < 0.0 || x > w.scene.box.size[axis]) {
+      if (a < w.scene.container.lateral_axes() && w.scene.container.periodic[axis]) {
+        x = geometry::wrap(x, w.scene.container.size[axis]);
+      } else if (x < 0.0 || x > w.scene.container.size[axis]) {
         v = -v;
       }
       squared += v * v;

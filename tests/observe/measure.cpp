@@ -80,8 +80,8 @@ TEST_F(Observe, SurfaceIsTheMeanOfTheColumnMaxima) {
   const auto wide = testing::make_scene(3, {2.0, 1.3, 0.4}, {true, false}, 0.05);     // 20 x 13, some of them empty
   for (const auto& scene : {flat, solid, wide}) {
     for (const std::size_t count : {0u, 3u, 60u, 400u}) {
-      const auto grains = random_grains(scene.box.dimension, count, scene.box.size);
-      const double expected = slow_surface(grains, scene.box, 0.05);
+      const auto grains = random_grains(scene.container.dimension, count, scene.container.size);
+      const double expected = slow_surface(grains, scene.container, 0.05);
       const double reference = surface_height(comm_, store(grains, scene, Spread::last), scene);
       EXPECT_NEAR(reference, expected, 4e-16 * expected);
       for (const Spread spread : every_spread) {
@@ -115,11 +115,12 @@ TEST_F(Observe, DensityCountsWhatIsBelowThePlanes) {
                                   {{0.2, 1.5, 0.2}, 0.1},    // whole, half in the bulk
                                   {{0.2, 0.2, 0.05}, 0.05},  // whole, below the bulk
                                   {{0.2, 0.9, 1.2}, 0.1}};   // above
-  const Density first = density(comm_, store(grains, scene, Spread::last), scene, bulk_of(scene, scene.box.height()));
+  const Density first =
+      density(comm_, store(grains, scene, Spread::last), scene, bulk_of(scene, scene.container.height()));
   EXPECT_NEAR(first.phi, (0.5 + 3.0 + 0.125) * ball / 2.0, 1e-15);
   EXPECT_NEAR(first.phi_bulk, 2.0 * ball / (2.0 * 0.6), 1e-15);
   for (const Spread spread : every_spread) {
-    const Density again = density(comm_, store(grains, scene, spread), scene, bulk_of(scene, scene.box.height()));
+    const Density again = density(comm_, store(grains, scene, spread), scene, bulk_of(scene, scene.container.height()));
     EXPECT_EQ(again.phi, first.phi);
     EXPECT_EQ(again.phi_bulk, first.phi_bulk);
   }
@@ -147,7 +148,8 @@ TEST_F(Observe, DensityOfALatticeOfDiscs) {
   for (int j = 0; j < 6; ++j) {  // the sixth row is above H_d
     for (int i = 0; i < 10; ++i) grains.push_back({{0.05 + 0.1 * i, 0.05 + 0.1 * j, 0.0}, 0.05});
   }
-  const Density got = density(comm_, store(grains, scene, Spread::all), scene, bulk_of(scene, scene.box.height()));
+  const Density got =
+      density(comm_, store(grains, scene, Spread::all), scene, bulk_of(scene, scene.container.height()));
   EXPECT_NEAR(got.phi, pi / 4.0, 1e-14);
   EXPECT_NEAR(got.phi_bulk, pi / 4.0, 1e-14);
 }
@@ -211,7 +213,7 @@ TEST_F(Observe, ContactsOfASimpleCubicLattice) {
     const auto scene = testing::make_scene(3, {c.side, c.side, 0.4}, c.periodic, r);
     for (const Spread spread : every_spread) {
       const auto s = store(shifted, scene, spread);
-      const Contacts got = contacts(comm_, s, scene, testing::all_pairs(s), testing::all_walls(s, scene.box));
+      const Contacts got = contacts(comm_, s, scene, testing::all_pairs(s), testing::all_walls(s, scene.container));
       EXPECT_EQ(got.pairs, c.pairs);
       EXPECT_DOUBLE_EQ(got.coordination, 2.0 * static_cast<double>(c.pairs) / 64.0);
       EXPECT_NEAR(got.mean_overlap, 0.001 / r, 1e-14);
@@ -227,7 +229,7 @@ TEST_F(Observe, ContactsOfASimpleCubicLattice) {
 
 TEST_F(Observe, ContactsOfRandomSpheresDoNotDependOnTheRanks) {
   const auto scene = testing::make_scene(3, {0.5, 0.4, 0.3}, {true, false}, 0.05);
-  const auto grains = random_grains(3, 120, scene.box.size);
+  const auto grains = random_grains(3, 120, scene.container.size);
   std::map<GlobalId, std::int32_t> slow;  // by the definition
   std::int64_t pairs = 0;
   for (std::size_t i = 0; i < grains.size(); ++i) {
@@ -242,10 +244,10 @@ TEST_F(Observe, ContactsOfRandomSpheresDoNotDependOnTheRanks) {
   }
   ASSERT_GT(pairs, 50);
   const auto one = store(grains, scene, Spread::last);
-  const Contacts first = contacts(comm_, one, scene, testing::all_pairs(one), testing::all_walls(one, scene.box));
+  const Contacts first = contacts(comm_, one, scene, testing::all_pairs(one), testing::all_walls(one, scene.container));
   for (const Spread spread : every_spread) {
     const auto s = store(grains, scene, spread);
-    const Contacts got = contacts(comm_, s, scene, testing::all_pairs(s), testing::all_walls(s, scene.box));
+    const Contacts got = contacts(comm_, s, scene, testing::all_pairs(s), testing::all_walls(s, scene.container));
     EXPECT_EQ(got.pairs, pairs);
     EXPECT_EQ(got.mean_overlap, first.mean_overlap);
     EXPECT_EQ(got.max_overlap, first.max_overlap);
@@ -365,13 +367,13 @@ TEST_F(Observe, FloorForceAtRestIsTheWeight) {
   grains.push_back({{0.5, 0.9, 0.3}, 0.1});  // in the air
   for (const Spread spread : every_spread) {
     const auto s = store(grains, scene, spread);
-    EXPECT_NEAR(floor_force(comm_, s, scene, testing::all_walls(s, scene.box)), 5.0 * weight, 1e-9 * weight);
+    EXPECT_NEAR(floor_force(comm_, s, scene, testing::all_walls(s, scene.container)), 5.0 * weight, 1e-9 * weight);
   }
 }
 
 TEST_F(Observe, ForcesOfRandomDiscsDoNotDependOnTheRanks) {
   const auto scene = testing::make_scene(2, {0.6, 0.5, 0.0}, {true, false}, 0.05);
-  const auto grains = random_grains(2, 80, scene.box.size);
+  const auto grains = random_grains(2, 80, scene.container.size);
   std::map<std::pair<GlobalId, GlobalId>, ContactForce> known;  // every rank: all owned here
   {
     particles::Store all(scene.features.layout());

@@ -39,15 +39,15 @@ void fill(Bed& bed) {
   std::mt19937_64 bits(7);
   const auto u = [&bits] { return static_cast<double>(bits() >> 11U) * 0x1p-53; };
   const scene::Scene& scene = bed.scene;
-  const auto rows = static_cast<std::size_t>(scene.box.dimension == 3 ? 6 : 1);
+  const auto rows = static_cast<std::size_t>(scene.container.dimension == 3 ? 6 : 1);
   const double apart = 1.95 * scene.sizes.mean();
   for (std::size_t k = 0; k < 5 * rows * per_row; ++k) {
     const std::size_t column = k % per_row, row = k / per_row % rows, level = k / per_row / rows;
     Vec3 x{0.025 + apart * static_cast<double>(column), 0.025 + apart * static_cast<double>(row), 0.0};
-    x[static_cast<std::size_t>(scene.box.vertical())] = 0.02 + apart * static_cast<double>(level);
+    x[static_cast<std::size_t>(scene.container.vertical())] = 0.02 + apart * static_cast<double>(level);
     Vec3 v{3.0 + 2.0 * u(), u(), u() - 1.0};
     Vec3 spin{20.0 * u(), 20.0 * u(), 20.0 * u()};
-    if (scene.box.dimension == 2) v = {v[0], v[2], 0.0}, spin = {0.0, 0.0, spin[2]};
+    if (scene.container.dimension == 2) v = {v[0], v[2], 0.0}, spin = {0.0, 0.0, spin[2]};
     const double r = scene.sizes.smallest() + u() * (scene.sizes.largest() - scene.sizes.smallest());
     if (static_cast<int>(k) % bed.comm.size() == bed.comm.rank()) {
       bed.store.add(static_cast<GlobalId>(k), x, r, v, spin);

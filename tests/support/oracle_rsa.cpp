@@ -11,7 +11,7 @@ namespace {
 bool try_place(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& result) {
   ++result.trials;
   for (const PlacedSphere& other : result.placed) {
-    if (rsa::overlap(scene.box, sphere.position, sphere.radius, other.position, other.radius)) return false;
+    if (rsa::overlap(scene.container, sphere.position, sphere.radius, other.position, other.radius)) return false;
   }
   result.placed.push_back(sphere);
   return true;
@@ -21,10 +21,10 @@ bool try_place(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& resul
 
 std::int64_t particles_needed(const scene::Scene& scene, const rsa::LayerRegion& region) {
   const long double target =
-      static_cast<long double>(scene.in.layers.fraction) * scene.box.floor_area() * region.thickness;
+      static_cast<long double>(scene.in.layers.fraction) * scene.container.floor_area() * region.thickness;
   long double sum = 0.0L;
   std::uint64_t n = 0;
-  while (sum < target) sum += geometry::volume(scene.box.dimension, scene.sizes.draw(region.layer, n++));
+  while (sum < target) sum += geometry::volume(scene.container.dimension, scene.sizes.draw(region.layer, n++));
   return static_cast<std::int64_t>(n);
 }
 

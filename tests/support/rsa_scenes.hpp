@@ -43,9 +43,9 @@ inline scene::Scene rsa_scene(int dimension, const Vec3& size, std::array<bool, 
   scene.in.layers.fraction = fraction;
   scene.in.layers.attempts = attempts;
   scene.in.layers.velocity = {0.5, 0.25, 0.125};
-  scene.box.dimension = dimension;
-  scene.box.size = size;
-  scene.box.periodic = periodic;
+  scene.container.dimension = dimension;
+  scene.container.size = size;
+  scene.container.periodic = periodic;
   scene.features.dimension = dimension;
   scene.sizes = scene::Sizes(radius, seed);
   scene.reach = 2.0 * scene.sizes.largest();
@@ -53,6 +53,6 @@ inline scene::Scene rsa_scene(int dimension, const Vec3& size, std::array<bool, 
   return scene;
 }
 
-inline geometry::ColumnGrid rsa_grid(const scene::Scene& scene) { return {scene.box, scene.column_width()}; }
+inline geometry::ColumnGrid rsa_grid(const scene::Scene& scene) { return {scene.container, scene.column_width()}; }
 
 }  // namespace packmpi::test

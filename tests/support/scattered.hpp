@@ -91,7 +91,7 @@ inline scene::Scene make_scene(int dimension, const Vec3& size, std::array<bool,
   scene.in.contact.friction = 0.2;
   scene.in.contact.wall_friction = 0.2;
   scene.in.jamming.gravity = 2.0;
-  scene.box = {.dimension = dimension, .size = size, .periodic = periodic};
+  scene.container = {.dimension = dimension, .size = size, .periodic = periodic};
   scene.features = {.dimension = dimension};
   scene.sizes = scene::Sizes(scene.in.particles.radius, 1);
   scene.time_step = 1.0e-4;

@@ -21,7 +21,7 @@ inline scene::Scene plain_scene(int dimension, double radius) {
   s.sizes = scene::Sizes(s.in.particles.radius, 1);
   s.in.contact.tension_cutoff = true;
   s.features = {.dimension = dimension, .rotation = false, .friction = false, .drag = false};
-  s.box = {.dimension = dimension, .size = {100.0, 100.0, dimension == 3 ? 100.0 : 0.0}, .periodic = {}};
+  s.container = {.dimension = dimension, .size = {100.0, 100.0, dimension == 3 ? 100.0 : 0.0}, .periodic = {}};
   s.time_step = 1e-4;
   s.force_quantum = 0x1p-30;  // +-1 MN
   return s;
@@ -59,7 +59,7 @@ class World {
         store_(scene.features.layout()),
         law_(dynamics::make_law(scene)),
         kernel_(dynamics::select_kernel(scene.features)) {
-    gravity_[static_cast<std::size_t>(scene_.box.vertical())] = -scene_.in.jamming.gravity;
+    gravity_[static_cast<std::size_t>(scene_.container.vertical())] = -scene_.in.jamming.gravity;
   }
 
   /// [m/s2], in place of the scene's: a slope is a floor under turned gravity.
@@ -101,7 +101,9 @@ class World {
   [[nodiscard]] const scene::Scene& scene() const { return scene_; }
   [[nodiscard]] Vec3 position(LocalIndex i) const { return store_.position(i); }
   [[nodiscard]] Vec3 velocity(LocalIndex i) const { return store_.velocity(i); }
-  [[nodiscard]] double up(LocalIndex i) const { return position(i)[static_cast<std::size_t>(scene_.box.vertical())]; }
+  [[nodiscard]] double up(LocalIndex i) const {
+    return position(i)[static_cast<std::size_t>(scene_.container.vertical())];
+  }
   [[nodiscard]] bool near_in_range() const { return near_in_range_; }
 
  private:
@@ -142,8 +144,8 @@ class World {
             .gravity = gravity_,
             .drag = scene_.in.drag.coefficient,
             .fluid_velocity = scene_.in.drag.fluid_velocity,
-            .size = scene_.box.size,
-            .periodic = scene_.box.periodic,
+            .size = scene_.container.size,
+            .periodic = scene_.container.periodic,
             .stored_pairs = {pair_stored_.data(), std::ssize(pairs_.first)},
             .stored_walls = {wall_stored_.data(), std::ssize(walls_.particle)}};
   }
