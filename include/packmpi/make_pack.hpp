@@ -22,10 +22,12 @@ struct PackResult {
   std::string error;  ///< one line: why there is no pack, or which targets it missed and what to change; else empty
   std::string file;   ///< path of the pack file (doc/file_format.md)
   std::int64_t particles = 0;
-  double height = 0.0;        ///< [m]
-  double phi = 0.0;           ///< solid fraction below the target height (CC16 eq. 22)
-  double phi_bulk = 0.0;      ///< solid fraction of the bulk (doc/theory.md, "Solid fraction")
-  double coordination = 0.0;  ///< mean touching particles
+  double height = 0.0;           ///< [m]
+  double phi = 0.0;              ///< solid fraction below the target height (CC16 eq. 22)
+  double phi_bulk = 0.0;         ///< solid fraction of the bulk (doc/theory.md, "Solid fraction")
+  double porosity_bulk = 1.0;    ///< 1 - phi_bulk
+  double void_ratio_bulk = 0.0;  ///< (1 - phi_bulk) / phi_bulk
+  double coordination = 0.0;     ///< mean touching particles
 };
 
 /// Makes the pack of a scene file on the ranks of `comm` and writes it. Collective over `comm`; throws nothing. A scene

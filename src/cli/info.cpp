@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text.hpp"
+#include "base/voids.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 
@@ -40,7 +41,7 @@ class Bits {
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;
 };
 
-std::string describe(const std::string& path, const pack::PackRows& pack) {
+std::string describe(const std::string& path, const pack::PackRows& pack, double phi_bulk) {
   Bits bits;
   bits.add(pack.id);
   bits.add(pack.position);
@@ -49,14 +50,17 @@ std::string describe(const std::string& path, const pack::PackRows& pack) {
   bits.add(pack.spin);
   bits.add(pack.layer);
   bits.add(pack.contacts);
-  return fmt::format("{}: a pack\n  {} particles in {}D, {} layers, {}\n  digest of the particles {:016x}\n", path,
-                     pack.id.size(), pack.dimension, pack.layer.empty() ? 0 : std::int64_t{pack.layer.back()} + 1,
-                     pack.spin.empty() ? "without spin" : "with spin", bits.value());
+  return fmt::format(
+      "{}: a pack\n  {} particles in {}D, {} layers, {}\n  solid fraction of the bulk {:.4f}, porosity "
+      "{:.4f}, void ratio {:.4f}\n  digest of the particles {:016x}\n",
+      path, pack.id.size(), pack.dimension, pack.layer.empty() ? 0 : std::int64_t{pack.layer.back()} + 1,
+      pack.spin.empty() ? "without spin" : "with spin", phi_bulk, porosity(phi_bulk), void_ratio(phi_bulk),
+      bits.value());
 }
 
 std::string describe_here(const std::string& path) {
   if (!std::filesystem::exists(path)) throw Error(ExitCode::io_failure, path + ": there is no such file");
-  if (pack::is_pack(path)) return describe(path, pack::read_pack(path));
+  if (pack::is_pack(path)) return describe(path, pack::read_pack(path), pack::read_origin(path).phi_bulk);
   const comm::Comm alone(MPI_COMM_SELF);
   const pack::RunState state = pack::read_state(path);
   particles::Store store(particles::layout_of(state.dimension, state.rotation));

@@ -66,6 +66,7 @@ std::uint64_t check_pack(const comm::Comm& comm, const std::string& path);
 struct PackOrigin {
   std::string scene;         ///< the effective input, TOML, in the keys of today
   std::string version, git;  ///< of the program that wrote it
+  double phi_bulk = 0.0;     ///< solid fraction of the bulk
 };
 /// Rank-local; rows are not looked at. Throws Error(io_failure).
 [[nodiscard]] PackOrigin read_origin(const std::string& path);

@@ -72,7 +72,8 @@ std::uint64_t seal_of(const std::string& path) {
 
 PackOrigin read_origin(const std::string& path) {
   return read_from(path, [](const PackFile& file) {
-    return PackOrigin{file.scene(), file.text("/provenance", "version"), file.text("/provenance", "git")};
+    return PackOrigin{file.scene(), file.text("/provenance", "version"), file.text("/provenance", "git"),
+                      file.number("/summary", "phi_bulk")};
   });
 }
 

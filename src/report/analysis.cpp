@@ -5,6 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/voids.hpp"
 #include "report/json_seal.hpp"
 #include "report/size_words.hpp"
 
@@ -51,6 +52,8 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
   root["local_density"] = {{"counted", a.local.counted},
                            {"left_out", a.local.left_out},
                            {"mean", a.local.mean},
+                           {"porosity", porosity(a.local.mean)},
+                           {"void_ratio", void_ratio(a.local.mean)},
                            {"sd", a.local.sd},
                            {"distribution", profile(a.local.distribution)}};
   root["contacts"] = {{"coordination", a.network.coordination},
@@ -97,6 +100,8 @@ std::string to_table(const observe::Analysis& a, int dimension) {
   line("coordination number without rattlers", a.network.held_coordination);
   line("local solid fraction in the bulk, mean", a.local.mean);
   line("local solid fraction in the bulk, standard deviation", a.local.sd);
+  line("porosity of that mean", porosity(a.local.mean));
+  line("void ratio of that mean", void_ratio(a.local.mean));
   line("force on the floor / weight", a.weight > 0.0 ? a.floor_force / a.weight : 0.0);
   line("mean normal force in the bulk [N]", a.forces.mean_normal_force);
   const auto v = static_cast<std::size_t>(dimension - 1);

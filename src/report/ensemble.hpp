@@ -8,8 +8,8 @@
 namespace packmpi::report {
 
 /// Quantities of a pack that the tables compare, by their names in NAME.json ("achieved").
-inline constexpr std::array<const char*, 6> ensemble_quantities{"phi",          "phi_bulk", "coordination",
-                                                                "mean_overlap", "height",   "particles"};
+inline constexpr std::array ensemble_quantities{"phi",          "phi_bulk",     "porosity_bulk", "void_ratio_bulk",
+                                                "coordination", "mean_overlap", "height",        "particles"};
 
 struct EnsembleRow {
   int set = 0, pack = 0;

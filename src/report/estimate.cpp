@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
+#include "base/voids.hpp"
 
 namespace packmpi::report {
 namespace {
@@ -46,6 +47,8 @@ std::string to_json(const Estimate& e) {
   root["size"] = e.size;
   root["layer_thickness"] = e.layer_thickness;
   root["fraction"] = {{"value", e.fraction}, {"error", e.fraction_error}, {"given", e.fraction_given}};
+  root["porosity"] = porosity(e.fraction);
+  root["void_ratio"] = void_ratio(e.fraction);
   root["particles"] = to_object(e.particles);
   root["particles_a_layer"] = e.a_layer;
   root["layers"] = to_object(e.layers);
@@ -92,6 +95,7 @@ std::string to_table(const Estimate& e) {
   line("container [m]", lengths(e.size));
   line("solid fraction of the bed",
        fmt::format("{:.4f} +- {:.3f}{}", e.fraction, e.fraction_error, e.fraction_given ? ", as given" : ""));
+  line("porosity, void ratio", fmt::format("{:.4f}, {:.4f}", porosity(e.fraction), void_ratio(e.fraction)));
   line("particles", range(e.particles));
   line("layers", fmt::format("{}, of {} particles each", range(e.layers), e.a_layer));
   line("height of the bed [m]", fmt::format("{:.4g}", e.height));

@@ -1,5 +1,7 @@
 #include "report/fields.hpp"
 
+#include "base/voids.hpp"
+
 namespace packmpi::report {
 namespace {
 
@@ -32,7 +34,11 @@ std::vector<disk::Field> achieved_fields(const RunRecord& r) {
           {"height", "m", r.height},
           {"top", "m", r.top},
           {"phi", "-", r.phi},
+          {"porosity", "-", porosity(r.phi)},
+          {"void_ratio", "-", void_ratio(r.phi)},
           {"phi_bulk", "-", r.phi_bulk},
+          {"porosity_bulk", "-", porosity(r.phi_bulk)},
+          {"void_ratio_bulk", "-", void_ratio(r.phi_bulk)},
           {"compaction_rate", "1/s", r.compaction_rate},
           {"bulk", "m", std::vector<double>{r.bulk.low, r.bulk.high}},
           {"coordination", "-", r.rest.network.coordination},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/voids.hpp"
 #include "report/report.hpp"
 #include "report/size_words.hpp"
 
@@ -24,6 +25,15 @@ std::string limit_words(const Criterion& c) {
   return c.target == 0.0 ? fmt::format("< {:g}", c.limit) : fmt::format("{:g} +- {:g}", c.target, c.limit);
 }
 
+void list_density(Buffer& out, const RunRecord& r) {
+  line(out, "solid fraction below the target height, phi", "", number(r.phi));
+  line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
+  line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
+  line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
+  line(out, "porosity in the bulk", "", number(porosity(r.phi_bulk)));
+  line(out, "void ratio in the bulk", "", number(void_ratio(r.phi_bulk)));
+}
+
 /// The middle column has targets only.
 void compare(Buffer& out, const RunRecord& r) {
   fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
@@ -31,8 +41,7 @@ void compare(Buffer& out, const RunRecord& r) {
   line(out, "particles", "", number(r.particles));
   line(out, "height [m]", number(r.target_height), number(r.height));
   line(out, "highest top [m]", "", number(r.top));
-  line(out, "solid fraction below the target height, phi", "", number(r.phi));
-  line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
+  list_density(out, r);
   line(out, "compaction rate left, d phi_bulk / dt [1/s]", "", number(r.compaction_rate));
   line(out, "mean radius [m]", number(r.target_mean_radius), number(r.mean_radius));
   line(out, "standard deviation of the radius [m]", number(r.target_sd_radius), number(r.sd_radius));

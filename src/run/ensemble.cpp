@@ -11,6 +11,7 @@
 #include "base/log.hpp"
 #include "base/terminal.hpp"
 #include "base/timer.hpp"
+#include "base/voids.hpp"
 #include "disk/text_file.hpp"
 #include "input/read.hpp"
 #include "report/ensemble.hpp"
@@ -129,8 +130,10 @@ int make_member(const comm::Comm& group, const input::Input& in, const Member& m
     const report::RunRecord record = make_pack(group, scene, options);
     budget.use(record.steps_here);
     if (group.rank() == 0) {
-      print(fmt::format("set {} pack {} (seed {}): {} particles, phi_bulk {:.4f}, {:.3g} s\n", member.set, member.pack,
-                        member.seed, record.particles, record.phi_bulk, record.wall_seconds));
+      print(fmt::format(
+          "set {} pack {} (seed {}): {} particles, phi_bulk {:.4f}, porosity {:.4f}, void ratio {:.4f}, {:.3g} s\n",
+          member.set, member.pack, member.seed, record.particles, record.phi_bulk, porosity(record.phi_bulk),
+          void_ratio(record.phi_bulk), record.wall_seconds));
     }
     return static_cast<int>(record.targets_met ? ExitCode::done : ExitCode::target_missed);
   } catch (const comm::AgreedError& error) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "base/voids.hpp"
 #include "comm/petsc.hpp"
 #include "comm/session.hpp"
 #include "packmpi/make_pack.hpp"
@@ -42,6 +43,8 @@ PackResult make(const comm::Comm& comm, const run::Options& options) {
   result.height = record.height;
   result.phi = record.phi;
   result.phi_bulk = record.phi_bulk;
+  result.porosity_bulk = porosity(record.phi_bulk);
+  result.void_ratio_bulk = void_ratio(record.phi_bulk);
   result.coordination = record.rest.network.coordination;
   result.error = report::missed_words(record, "; ");
   return result;

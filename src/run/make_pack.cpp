@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/log.hpp"
+#include "base/voids.hpp"
 #include "disk/text_file.hpp"
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
@@ -192,6 +193,14 @@ void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
        {"distance_by_mass", sizes.by_mass.distance}});
 }
 
+void tell_density(const report::RunRecord& record) {
+  const double phi = record.phi_bulk;
+  log::event("density",
+             fmt::format("density of the bulk: solid fraction {:.4f}, porosity {:.4f}, void ratio {:.4f}", phi,
+                         porosity(phi), void_ratio(phi)),
+             {{"phi_bulk", phi}, {"porosity_bulk", porosity(phi)}, {"void_ratio_bulk", void_ratio(phi)}});
+}
+
 // How near to rest, and what was missed.
 void tell_rest(const comm::Comm& comm, const report::RunRecord& record) {
   std::string line = "rest:";
@@ -226,6 +235,7 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   record.series_rows_in_file = journal.finish();
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
+  tell_density(record);
   tell_sizes(scene, record.sizes);
   tell_rest(comm, record);
   record.wall_seconds = comm.max(watch.seconds());

@@ -38,6 +38,9 @@ TEST_F(Report, JsonGivesEveryNumberBack) {
   EXPECT_EQ(json["target"]["target_height"].get<double>(), record.target_height);
   EXPECT_EQ(json["target"]["size"].get<std::vector<double>>(), (std::vector<double>{1.0, 2.0, 0.5}));
   EXPECT_EQ(json["achieved"]["phi"].get<double>(), 0.1 + 0.2);
+  EXPECT_EQ(json["achieved"]["porosity"].get<double>(), 1.0 - (0.1 + 0.2));
+  EXPECT_EQ(json["achieved"]["void_ratio"].get<double>(), (1.0 - (0.1 + 0.2)) / (0.1 + 0.2));
+  EXPECT_EQ(json["achieved"]["porosity_bulk"].get<double>(), 1.0 - record.phi_bulk);
   EXPECT_EQ(json["achieved"]["height"].get<double>(), 0.512345678901234);
   EXPECT_EQ(json["achieved"]["particles"].get<std::int64_t>(), 1234567890123);
   EXPECT_EQ(json["achieved"]["reached"].get<bool>(), true);
@@ -84,12 +87,12 @@ TEST_F(Report, TableFitsAScreenAndIsAligned) {
   while (std::getline(lines, line)) {
     EXPECT_LE(line.size(), 100u) << line;
     if (line.find("target") != std::string::npos && quantity_end == 0) quantity_end = line.size();
-    if (count >= 1 && count <= 25) {
+    if (count >= 1 && count <= 29) {
       EXPECT_EQ(line.size(), quantity_end) << line;
     }
     ++count;
   }
-  EXPECT_EQ(count, 1u + 25u + 1u + 12u);
+  EXPECT_EQ(count, 1u + 29u + 1u + 12u);
 }
 
 RunRecord counted_record(std::int64_t big) {

@@ -1,6 +1,7 @@
 """A pack and what stands beside it: the file NAME.hdf, its time series, its analysis by `packmpi analyze`."""
 import csv
 import json
+import math
 import shutil
 import subprocess
 import tomllib
@@ -55,6 +56,7 @@ class Pack:
     contacts        (N): touching particles
     pairs, forces   (M, 2) ids and (M, 3) forces on the first [N], or None if the pack was written without contacts
     phi, phi_bulk   solid fraction below H_d, and of the bulk: between 0.2 and 0.8 of H_d, or of the height of a bed below that
+    porosity_bulk, void_ratio_bulk    1 - phi_bulk, (1 - phi_bulk) / phi_bulk; infinite where there is nothing
     summary, audit, rest, layers, provenance    what the file says of the whole pack, by name; layers: a list for each name; rest:
                     measures, their limits (NAME_limit) and what was missed; empty of a pack that was made before there was rest
 
@@ -89,6 +91,8 @@ class Pack:
         self.dimension: int = self.summary["dimension"]
         self.phi: float = self.summary["phi"]
         self.phi_bulk: float = self.summary["phi_bulk"]
+        self.porosity_bulk: float = 1.0 - self.phi_bulk
+        self.void_ratio_bulk: float = self.porosity_bulk / self.phi_bulk if self.phi_bulk else math.inf
         has_contacts = "contacts" in file
         self.pairs: Union[Integers, None] = file["contacts/pair"][:] if has_contacts else None
         self.forces: Union[Floats, None] = file["contacts/force"][:] if has_contacts else None

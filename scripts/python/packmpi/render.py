@@ -101,7 +101,7 @@ def container_size(pack: Pack) -> str:
 def caption(pack: Pack) -> str:
     """What stands above a picture."""
     return (f"{pack.count:,} {pack.noun} in {container_size(pack)},  "
-            rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}")
+            rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}  ($n$ = {pack.porosity_bulk:.3f}, $e$ = {pack.void_ratio_bulk:.3f})")
 
 
 def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int) -> None:

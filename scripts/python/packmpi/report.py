@@ -90,7 +90,7 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
     """The few numbers everybody looks for, large."""
     made = pack.summary
     tiles = [(number(pack.count), pack.noun), (f"{pack.phi_bulk:.4f}", "solid fraction of the bulk"),
-             (f"{1.0 - pack.phi_bulk:.4f}", "porosity of the bulk"),
+             (f"{pack.porosity_bulk:.4f}", "porosity of the bulk"),
              (f"{made['coordination']:.2f}", "coordination number"),
              (length(made["height"]), f"high; target {length(pack.size[-1])}"),
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
@@ -177,8 +177,8 @@ def comparison(pack: Pack, analysis: dict[str, Any]) -> str:
              percent(inserted, made["target_fraction"])],
             ["φ below the target height", "–", f"{pack.phi:.4f}", "–"],
             ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"],
-            ["porosity of the bulk, 1 − φ", "–", f"{1.0 - pack.phi_bulk:.4f}", "–"],
-            ["void ratio of the bulk, (1 − φ) / φ", "–", number((1.0 - pack.phi_bulk) / pack.phi_bulk if pack.phi_bulk else None), "–"]]
+            ["porosity of the bulk, 1 − φ", "–", f"{pack.porosity_bulk:.4f}", "–"],
+            ["void ratio of the bulk, (1 − φ) / φ", "–", number(pack.void_ratio_bulk if pack.phi_bulk else None), "–"]]
     for kind, match in analysis["sizes"].items():
         rows += size_rows(kind, match, 2.0 * pack.radius.max())
     return table(["", "target", "achieved", "difference"], rows, "target and achieved")
