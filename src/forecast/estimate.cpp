@@ -218,11 +218,10 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   report::RunRecord record = run::targets_of(comm, scene);
   record.stop_reason = "height";
   record.layers.assign(rows, some_row());
+  const double touching = scene.container.dimension == 3 ? 5.2 : 4.5;  // of a particle
+  const std::int64_t touching_pairs = std::llround(0.5 * touching * static_cast<double>(e.particles.value));
   std::optional<std::int64_t> contacts;
-  if (scene.in.output.contacts) {
-    const double touching = scene.container.dimension == 3 ? 5.2 : 4.5;  // of a particle
-    contacts = std::llround(0.5 * touching * static_cast<double>(e.particles.value));
-  }
+  if (scene.in.output.contacts) contacts = touching_pairs;
   e.pack_bytes =
       pack::pack_bytes(record, scene.in.dynamics.rotation, e.particles.value, contacts, observe::map_columns(scene));
   pack::RunState state;
@@ -235,7 +234,7 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   state.progress.layers = record.layers;
   state.progress.now.row = some_row();
   for (std::int64_t layer = 0; layer < e.layers.value; ++layer) state.progress.first_ids.push_back(layer * e.a_layer);
-  e.checkpoint_bytes = pack::checkpoint_bytes(scene.features.layout(), state);
+  e.checkpoint_bytes = pack::checkpoint_bytes(scene.features.layout(), state, scene.features, touching_pairs);
   const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.settling.time_step;
   e.step_log_bytes = std::llround(step_row_bytes * std::max(1.0, e.duration / interval));
 }

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
+#include <string_view>
 
 #include "base/fnv.hpp"
 #include "base/memory.hpp"
 #include "disk/scatter.hpp"
 #include "disk/whole_file.hpp"
+#include "pack/histories.hpp"
 #include "pack/run_state.hpp"
 
 namespace packmpi::pack {
@@ -17,7 +20,7 @@ constexpr std::size_t longest_record = 12;  // doubles
 
 struct RecordRow {
   GlobalId id;
-  std::array<double, longest_record> record;
+  std::array<double, longest_record> values;
 };
 
 using Stores = std::span<const particles::Store* const>;
@@ -30,7 +33,7 @@ std::vector<RecordRow> rows_here(Stores stores) {
   for (const particles::Store* store : stores) {
     for (LocalIndex i = 0; i < store->owned(); ++i) {
       RecordRow row{store->ids()[static_cast<std::size_t>(i)], {}};
-      std::copy_n(store->record(i), store->layout().used_doubles(), row.record.begin());
+      std::copy_n(store->record(i), store->layout().used_doubles(), row.values.begin());
       rows.push_back(row);
     }
   }
@@ -43,39 +46,72 @@ std::uint64_t digest_of(const comm::Comm& comm, Stores stores) {
   return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(mine)));  // mod 2^64
 }
 
-/// `width` doubles of each record from `begin` on.
-disk::h5::Column record_column(const std::string& name, const std::string& unit, const disk::h5::Slab& slab,
-                               const std::vector<RecordRow>& rows, int begin, int width) {
+std::uint64_t digest_of_histories(const comm::Comm& comm, const Histories& histories) {
+  return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(digest(histories))));  // mod 2^64
+}
+
+/// `width` doubles of each row's values from `begin` on.
+template <class Row>
+disk::h5::Column values_column(const std::string& path, std::string_view unit, const disk::h5::Slab& slab,
+                               const std::vector<Row>& rows, int begin, int width) {
   const auto from = static_cast<std::size_t>(begin);
   const auto wide = static_cast<std::size_t>(width);
   auto bytes = [&rows, from, wide](std::size_t first, std::size_t count) {
     std::vector<std::byte> buffer(count * wide * sizeof(double));
     std::byte* out = buffer.data();
     for (std::size_t k = first; k < first + count; ++k, out += wide * sizeof(double)) {
-      std::memcpy(out, rows[k].record.data() + from, wide * sizeof(double));
+      std::memcpy(out, rows[k].values.data() + from, wide * sizeof(double));
     }
     return buffer;
   };
-  return {"/particles/" + name,
-          unit,
+  return {path,
+          std::string(unit),
           disk::h5::Handle(H5Tcopy(disk::h5::type_of<double>()), H5Tclose, "copy a type"),
           wide,
           slab,
           bytes};
 }
 
-std::vector<disk::h5::Column> plan_columns(const disk::h5::Slab& slab, const std::vector<RecordRow>& rows,
-                                           const particles::Layout& layout) {
-  std::vector<disk::h5::Column> plan;
+void add_particles(const disk::h5::Slab& slab, const std::vector<RecordRow>& rows, const particles::Layout& layout,
+                   std::vector<disk::h5::Column>& plan) {
+  const auto add = [&](const char* name, const char* unit, int begin, int width) {
+    plan.push_back(values_column(std::string("/particles/") + name, unit, slab, rows, begin, width));
+  };
   plan.push_back(disk::h5::make_column<std::int64_t>("/particles/id", "", slab, rows,
                                                      [](const RecordRow& row) { return row.id; }));
-  plan.push_back(record_column("position", "m", slab, rows, layout.position, layout.dimension));
-  plan.push_back(record_column("radius", "m", slab, rows, layout.radius, 1));
-  plan.push_back(record_column("velocity", "m/s", slab, rows, layout.velocity, layout.dimension));
-  if (layout.rotation) {
-    plan.push_back(record_column("surface_speed", "m/s", slab, rows, layout.spin, layout.spin_components()));
+  add("position", "m", layout.position, layout.dimension);
+  add("radius", "m", layout.radius, 1);
+  add("velocity", "m/s", layout.velocity, layout.dimension);
+  if (layout.rotation) add("surface_speed", "m/s", layout.spin, layout.spin_components());
+}
+
+void add_histories(const disk::h5::Slab& slab, const Histories& histories, std::vector<disk::h5::Column>& plan) {
+  if (!histories.any()) return;
+  const std::vector<HistoryRow>& rows = histories.rows;
+  plan.push_back(disk::h5::make_column<std::int64_t>("/contacts/holder", "", slab, rows,
+                                                     [](const HistoryRow& row) { return row.holder; }));
+  plan.push_back(disk::h5::make_column<std::int64_t>("/contacts/other", "", slab, rows,
+                                                     [](const HistoryRow& row) { return row.other; }));
+  int begin = 0;
+  for (const scene::Storing& what : scene::storings(histories.features)) {
+    plan.push_back(values_column("/contacts/" + std::string(what.name), what.unit, slab, rows, begin, what.components));
+    begin += what.components;
   }
-  return plan;
+}
+
+/// Digests of what the rows of a file must be, whatever their order.
+struct Digests {
+  std::uint64_t particles = 0;
+  std::optional<std::uint64_t> contacts;  ///< none: no contacts in the file
+};
+
+/// Collective. To the ranks that write them: by holder, and of a holder by the other end. Where they lie in the file.
+disk::h5::Slab bring(const comm::Comm& comm, const disk::IdBlocks& blocks, Histories& histories) {
+  if (!histories.any()) return {};
+  histories.rows = scatter(comm, blocks, std::move(histories.rows), &HistoryRow::holder);
+  sort_by_ends(histories.rows);
+  const auto mine = std::ssize(histories.rows);
+  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), histories.rows.size()};
 }
 
 void write_bytes(hid_t file, const std::string& path, const std::string& text) {
@@ -83,13 +119,15 @@ void write_bytes(hid_t file, const std::string& path, const std::string& text) {
 }
 
 // All of the file but the rows of `plan`.
-void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const RunState& state, std::uint64_t digest) {
+void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const RunState& state, const Digests& digests) {
   const std::string text = to_text(state);
   disk::h5::set_fixed_attribute(file, "format", "packmpi-checkpoint");
   disk::h5::set_attribute(file, "format_version", checkpoint_version);
-  disk::h5::set_attribute(file, "particle_digest", digest);
+  disk::h5::set_attribute(file, "particle_digest", digests.particles);
+  if (digests.contacts) disk::h5::set_attribute(file, "contact_digest", *digests.contacts);
   disk::h5::set_attribute(file, "text_digest", fnv_add(fnv_add(fnv_start, text), state.effective_input));
   (void)disk::h5::create_group(file, "/particles");
+  if (digests.contacts) (void)disk::h5::create_group(file, "/contacts");
   write_bytes(file, "/state", text);
   write_bytes(file, "/effective_input", state.effective_input);
   for (const disk::h5::Column& column : plan) disk::h5::create_dataset(file, column);
@@ -98,10 +136,11 @@ void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const Ru
 }  // namespace
 
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
-                      const RunState& state) {
+                      const RunState& state, Histories histories) {
   const Occupation now("the checkpoint on its way to the file");
   const disk::h5::Quiet quiet;
-  const std::uint64_t digest = digest_of(comm, stores);
+  Digests digests{.particles = digest_of(comm, stores), .contacts = {}};
+  if (histories.any()) digests.contacts = digest_of_histories(comm, histories);
   const disk::IdBlocks blocks{state.progress.count, comm.size()};
   std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
   const GlobalId begin = blocks.begin(comm.rank());
@@ -113,15 +152,23 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
       throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
     }
   });
-  const std::vector<disk::h5::Column> plan = plan_columns(slab, rows, stores.front()->layout());
-  disk::write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, plan, state, digest); });
+  const disk::h5::Slab contacts = bring(comm, blocks, histories);
+  std::vector<disk::h5::Column> plan;
+  add_particles(slab, rows, stores.front()->layout(), plan);
+  add_histories(contacts, histories, plan);
+  disk::write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, plan, state, digests); });
 }
 
-std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state) {
+std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state, const scene::Features& features,
+                              std::int64_t contacts) {
   const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), 0, 0};
   const std::vector<RecordRow> none;
-  const std::vector<disk::h5::Column> plan = plan_columns(slab, none, layout);
-  return disk::whole_file_bytes(plan, [&](hid_t file) { write_frame(file, plan, state, 0); });
+  const Histories histories{.features = features, .rows = {}};
+  const Digests digests{.particles = 0, .contacts = histories.any() ? std::optional<std::uint64_t>(0) : std::nullopt};
+  std::vector<disk::h5::Column> plan;
+  add_particles(slab, none, layout, plan);
+  add_histories({static_cast<hsize_t>(contacts), 0, 0}, histories, plan);
+  return disk::whole_file_bytes(plan, [&](hid_t file) { write_frame(file, plan, state, digests); });
 }
 
 }  // namespace packmpi::pack

@@ -1,6 +1,7 @@
 /// A run between two steps, on the disk: everything that steers it, nothing that depends on the ranks (design:
 /// doc/file_format.md).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -8,10 +9,12 @@
 #include "comm/comm.hpp"
 #include "pack/progress.hpp"
 #include "particles/store.hpp"
+#include "scene/pair_channels.hpp"
+#include "scene/scene.hpp"
 
 namespace packmpi::pack {
 
-inline constexpr std::int64_t checkpoint_version = 3;
+inline constexpr std::int64_t checkpoint_version = 4;
 inline constexpr std::int64_t oldest_checkpoint_version = 2;  ///< that can be read
 
 /// What a checkpoint says beside its particles: who wrote it, of what, and where the run was.
@@ -24,16 +27,32 @@ struct RunState {
   Progress progress;
 };
 
+/// What a contact remembers, as one rank keeps it: see neighbor::ContactHistory.
+struct HistoryRow {
+  GlobalId holder;                                          ///< the higher id; of a wall: the particle
+  GlobalId other;                                           ///< the lower id; of a wall: -1 - its number
+  std::array<double, scene::most_stored_doubles> values{};  ///< in the order of scene::storings
+};
+
+/// The memory of the contacts of a scene, each of them on one rank. No rows and no memory in `features`: none.
+struct Histories {
+  scene::Features features{};  ///< of the scene: dimension, memory and rolling say what is stored
+  std::vector<HistoryRow> rows;
+
+  [[nodiscard]] bool any() const noexcept { return features.memory; }
+};
+
 /// Collective. Writes PATH whole or not at all: temporary, fsync, rename, fsync of the folder. The bits of the records
 /// are written as they are; rows by id, whatever the ranks; nothing is gathered. The particles are the owned ones of
-/// all `stores`, which have one layout. Throws as write_pack(). Memory: about 200 bytes a particle of this rank's
-/// share, for the time of the call.
+/// all `stores`, which have one layout; histories in any order. Throws as write_pack(). Memory: about 200 bytes a
+/// particle of this rank's share, and 150 a contact that remembers, for the time of the call.
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
-                      const RunState& state);
+                      const RunState& state, Histories histories = {});
 
-/// Bytes of the file that write_checkpoint() would write of state.progress.count particles. Rank-local. Throws
-/// Error(io_failure).
-[[nodiscard]] std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state);
+/// Bytes of the file that write_checkpoint() would write of state.progress.count particles and so many contacts that
+/// remember, if those of `features` do. Rank-local. Throws Error(io_failure).
+[[nodiscard]] std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state,
+                                            const scene::Features& features = {}, std::int64_t contacts = 0);
 
 /// The state in the checkpoint PATH, its digest verified; the particles are not looked at. What a former version wrote
 /// comes in the names of today. Rank-local.
@@ -41,8 +60,14 @@ void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span
 [[nodiscard]] RunState read_state(const std::string& path);
 
 /// Collective. The state in PATH, and into the empty `store` this rank's share of its particles (a run of ids; no rank
-/// owns them by place yet). Everything is verified against the digests in the file. Throws Error(bad_checkpoint) on all
-/// ranks; then `store` is in no particular state.
-[[nodiscard]] RunState read_checkpoint(const comm::Comm& comm, const std::string& path, particles::Store& store);
+/// owns them by place yet); into `histories` those that these particles hold. Everything is verified against the
+/// digests in the file. Throws Error(bad_checkpoint) on all ranks; then `store` is in no particular state.
+[[nodiscard]] RunState read_checkpoint(const comm::Comm& comm, const std::string& path, particles::Store& store,
+                                       Histories* histories = nullptr);
+
+/// Throws Error(bad_checkpoint), words without the path, unless this rank's particles and histories can be those of a
+/// run of `scene`: radii in its range, histories if and only if its contacts remember, and no spring longer than its
+/// friction can hold. Where particles are, the guards of the run look at. Local.
+void check_in_scene(const particles::Store& store, const Histories& histories, const scene::Scene& scene);
 
 }  // namespace packmpi::pack

@@ -4,16 +4,20 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include "base/fnv.hpp"
 #include "disk/scatter.hpp"
 #include "disk/sealed_file.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/former_names.hpp"
+#include "pack/histories.hpp"
 #include "pack/run_state.hpp"
 
 namespace packmpi::pack {
 namespace {
+
+constexpr std::int64_t renamed_version = 3;  // from which on names are those of today
 
 [[noreturn]] void refuse_checkpoint(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
 
@@ -40,7 +44,7 @@ RunState state_in(const disk::SealedFile& file) {
   if (fnv_add(fnv_add(fnv_start, text), scene) != file.number<std::uint64_t>("/", "text_digest")) {
     refuse_checkpoint("the digest of its state and scene is wrong: the file is damaged");
   }
-  const bool former = file.number<std::int64_t>("/", "format_version") < checkpoint_version;
+  const bool former = file.number<std::int64_t>("/", "format_version") < renamed_version;
   RunState state = former ? former_state_of(state_in_present_names(text)) : state_of(text);
   state.effective_input = former ? scene_in_present_names(scene) : scene;
   const Progress& p = state.progress;
@@ -95,6 +99,26 @@ void explained(const std::string& path, Action&& action) {
   }
 }
 
+struct Digests {
+  std::uint64_t particles = 0, contacts = 0;
+};
+
+/// Collective. `mine` is of this rank's rows of `what`.
+void expect_digest(const comm::Comm& comm, const std::string& path, std::string_view what, std::uint64_t mine,
+                   std::uint64_t expected) {
+  if (static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(mine))) == expected) return;
+  comm::fail_together(comm, ExitCode::bad_checkpoint,
+                      fmt::format("checkpoint {}: the digest of its {} is wrong: the file is damaged", path, what));
+}
+
+/// Collective. Each to the rank that has its holder, of so many `particles`.
+void bring_to_holders(const comm::Comm& comm, const std::string& path, GlobalId particles,
+                      std::vector<HistoryRow>& rows) {
+  rows = disk::scatter(comm, disk::IdBlocks{particles, comm.size()}, std::move(rows), &HistoryRow::holder);
+  sort_by_ends(rows);
+  comm::agree_on(comm, [&] { explained(path, [&] { check_once(rows); }); });
+}
+
 }  // namespace
 
 RunState read_state(const std::string& path) {
@@ -104,29 +128,35 @@ RunState read_state(const std::string& path) {
   return state;
 }
 
-RunState read_checkpoint(const comm::Comm& comm, const std::string& path, particles::Store& store) {
+RunState read_checkpoint(const comm::Comm& comm, const std::string& path, particles::Store& store,
+                         Histories* histories) {
   const disk::h5::Quiet quiet;
   RunState state;
-  std::uint64_t expected = 0;
+  Digests expected;
+  Histories found;
   comm::agree_on(comm, [&] {
     explained(path, [&] {
       const disk::SealedFile file = open_file(path);
       state = state_in(file);
-      expected = file.number<std::uint64_t>("/", "particle_digest");
+      expected.particles = file.number<std::uint64_t>("/", "particle_digest");
       if (state.dimension != store.layout().dimension || state.rotation != store.layout().rotation) {
         refuse_checkpoint("it is of another dimension, or with and without rotation");
       }
       const disk::IdBlocks blocks{state.progress.count, comm.size()};
       const GlobalId begin = blocks.begin(comm.rank());
       read_particles(file, {state.progress.count, begin, blocks.begin(comm.rank() + 1) - begin}, store);
+      found.features = stored_in(file, state.dimension);
+      if (!found.any()) return;
+      expected.contacts = file.number<std::uint64_t>("/", "contact_digest");
+      found.rows = read_histories(file, comm, found.features, state.progress.count);
     });
   });
-  const auto mine = static_cast<std::int64_t>(particles::digest(store));
-  const bool same = static_cast<std::uint64_t>(comm.sum(mine)) == expected;
-  if (!same) {
-    comm::fail_together(comm, ExitCode::bad_checkpoint,
-                        fmt::format("checkpoint {}: the digest of its particles is wrong: the file is damaged", path));
+  expect_digest(comm, path, "particles", particles::digest(store), expected.particles);
+  if (found.any()) {
+    expect_digest(comm, path, "contacts", digest(found), expected.contacts);
+    bring_to_holders(comm, path, state.progress.count, found.rows);
   }
+  if (histories != nullptr) *histories = std::move(found);
   return state;
 }
 

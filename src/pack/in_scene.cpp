@@ -1,6 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "base/error.hpp"
+#include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 
 namespace packmpi::pack {
@@ -8,7 +13,74 @@ namespace {
 
 [[noreturn]] void refuse_scene(const std::string& words) { throw Error(ExitCode::io_failure, words); }
 
+/// Packs of version 1 may have radii in single precision.
+constexpr double rounding = 1e-6;
+
+/// What is wrong with the radius of a particle; nothing if it can be of the scene.
+std::string fault_of_radius(double radius, const scene::Sizes& sizes) {
+  if (radius > sizes.largest()) return fmt::format("the largest of its scene is {} m", sizes.largest());
+  if (radius < sizes.smallest() * (1.0 - rounding)) {
+    return fmt::format("the smallest of its scene is {} m", sizes.smallest());
+  }
+  return {};
+}
+
+std::string words_of_radius(GlobalId id, double radius, const std::string& fault) {
+  return fmt::format("particle {} has the radius {} m, {}", id, radius, fault);
+}
+
+[[noreturn]] void refuse_checkpoint(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
+
+void check_radii(const particles::Store& store, const scene::Sizes& sizes) {
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const std::string fault = fault_of_radius(store.radius(i), sizes);
+    if (fault.empty()) continue;
+    refuse_checkpoint(words_of_radius(store.ids()[static_cast<std::size_t>(i)], store.radius(i), fault));
+  }
+}
+
+/// [m] that no spring of the coefficient `friction` is longer than. Sliding, it is mu f_n / k_t, that is of the elastic
+/// force mu E* / (6 G*) times the overlap, which the guards keep below half a radius. The dashpot adds to f_n less than
+/// twenty times the damping ratio as much, however small the overlap (doc/file_format.md).
+double longest_spring(const scene::Scene& scene, double friction) {
+  const input::Input& in = scene.in;
+  const double nu = in.particles.poisson_ratio;
+  const double moduli = 2.0 * (2.0 - nu) / (1.0 - nu);  // E* / G*
+  return friction * moduli / 6.0 * (1.0 + 20.0 * in.contact.damping_ratio) * 0.5 * scene.sizes.largest();
+}
+
+void check_springs(const Histories& histories, const scene::Scene& scene) {
+  const input::Contact& contact = scene.in.contact;
+  const std::array longest{longest_spring(scene, std::max(contact.friction, contact.wall_friction)),
+                           longest_spring(scene, contact.rolling_friction),
+                           longest_spring(scene, contact.twisting_friction)};
+  for (const HistoryRow& row : histories.rows) {
+    std::size_t at = 0, which = 0;
+    for (const scene::Storing& what : scene::storings(histories.features)) {
+      double square = 0.0;
+      for (int c = 0; c < what.components; ++c, ++at) square += row.values[at] * row.values[at];
+      if (square <= longest[which] * longest[which]) {
+        ++which;
+        continue;
+      }
+      refuse_checkpoint(fmt::format("the {} of particle {} and {} is {} m, and friction holds at most {} m", what.name,
+                                    row.holder, row.other, std::sqrt(square), longest[which]));
+    }
+  }
+}
+
 }  // namespace
+
+void check_in_scene(const particles::Store& store, const Histories& histories, const scene::Scene& scene) {
+  check_radii(store, scene.sizes);
+  const scene::Features &of = histories.features, &wanted = scene.features;
+  if (of.memory != wanted.memory || (of.memory && of.rolling != wanted.rolling)) {
+    refuse_checkpoint(
+        "what its contacts remember is not what those of the scene do: go on with the packmpi that wrote "
+        "it, or begin anew");
+  }
+  check_springs(histories, scene);
+}
 
 void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
   constexpr double highest = 10.0;  // of the height asked for and a layer
@@ -18,10 +90,8 @@ void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
   const double largest = scene.sizes.largest();
   const auto up = static_cast<std::size_t>(scene.container.vertical());
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
-    if (rows.radius[k] > largest) {
-      refuse_scene(fmt::format("particle {} has the radius {} m, the largest of its scene is {} m", rows.id[k],
-                               rows.radius[k], largest));
-    }
+    const std::string fault = fault_of_radius(rows.radius[k], scene.sizes);
+    if (!fault.empty()) refuse_scene(words_of_radius(rows.id[k], rows.radius[k], fault));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double x = rows.position[k][axis];
       const double size = axis > up ? 0.0 : scene.container.size[axis];

@@ -69,6 +69,30 @@ void Bed::balance() {
   neighborhood.rebuild(store);
 }
 
+pack::Histories Bed::histories() const {
+  pack::Histories all{.features = scene.features, .rows = {}};
+  neighborhood.each_history(store, [&](const neighbor::ContactHistory& contact) {
+    const GlobalId holder = contact.holder();
+    pack::HistoryRow row{.holder = holder, .other = contact.second < 0 ? contact.second : contact.first};
+    std::ranges::copy(contact.values, row.values.begin());
+    all.rows.push_back(row);
+  });
+  return all;
+}
+
+void Bed::give(const pack::Histories& histories) {
+  const auto stored = static_cast<std::size_t>(scene::stored_doubles(scene.features));
+  std::vector<neighbor::ContactHistory> contacts;
+  contacts.reserve(histories.rows.size());
+  for (const pack::HistoryRow& row : histories.rows) {
+    const bool wall = row.other < 0;
+    contacts.push_back({.first = wall ? row.holder : row.other,
+                        .second = wall ? row.other : row.holder,
+                        .values = std::span(row.values).first(stored)});
+  }
+  neighborhood.give(store, contacts);
+}
+
 std::vector<std::int32_t> Bed::layers() const {
   std::vector<std::int32_t> layer;
   layer.reserve(static_cast<std::size_t>(store.owned()));

@@ -7,6 +7,7 @@
 #include "dynamics/stepper.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "observe/measure.hpp"
+#include "pack/checkpoint.hpp"
 #include "pack/progress.hpp"
 #include "particles/store.hpp"
 #include "scene/ownership.hpp"
@@ -49,6 +50,11 @@ struct Bed {
   [[nodiscard]] double height() const;   ///< [m] of the bed by the scene's rule. Collective
 
   [[nodiscard]] observe::Bulk bulk() const;  ///< by its surface, frozen or not. Collective
+
+  /// What the contacts of this rank's particles remember, frozen or not.
+  [[nodiscard]] pack::Histories histories() const;
+  /// Every rank alike. Puts it back: the holders are in the store, and nothing is frozen yet. Then rebuild.
+  void give(const pack::Histories& histories);
 
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;

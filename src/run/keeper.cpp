@@ -135,7 +135,7 @@ void Keeper::write() {
                              .rotation = bed_.scene.features.rotation,
                              .progress = bed_.progress};
   const std::array<const particles::Store*, 2> stores{&bed_.store, &bed_.neighborhood.frozen()};
-  pack::write_checkpoint(bed_.comm, files_.slots[slot_], stores, state);
+  pack::write_checkpoint(bed_.comm, files_.slots[slot_], stores, state, bed_.histories());
   disk::write_text(bed_.comm, files_.manifest,
                    fmt::format("{{\"format\": \"packmpi-checkpoints\", \"format_version\": 2, \"newest\": \"{}\", "
                                "\"serial\": {}, \"layer\": {}, \"phase\": \"{}\", \"step\": {}, \"particles\": {}}}\n",

@@ -76,12 +76,24 @@ std::vector<std::string> choices(const comm::Comm& comm, const Files& files, con
   return paths;
 }
 
+/// Collective.
+void check_in_scene(const std::string& path, const pack::Histories& histories, const Bed& bed) {
+  comm::agree_on(bed.comm, [&] {
+    try {
+      pack::check_in_scene(bed.store, histories, bed.scene);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("checkpoint {}: {}", path, error.what()));
+    }
+  });
+}
+
 /// The first of `paths` that is valid to the last particle.
 std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>& paths, std::string passed_over,
-                                                  Bed& bed) {
+                                                  Bed& bed, pack::Histories& histories) {
   for (const std::string& path : paths) {
     try {
-      pack::RunState state = pack::read_checkpoint(bed.comm, path, bed.store);
+      pack::RunState state = pack::read_checkpoint(bed.comm, path, bed.store, &histories);
+      check_in_scene(path, histories, bed);
       if (!passed_over.empty()) log::warn("passed over: " + passed_over);
       return {std::move(state), path};
     } catch (const comm::AgreedError& error) {
@@ -92,8 +104,9 @@ std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>
   comm::fail_together(bed.comm, ExitCode::bad_checkpoint, passed_over);
 }
 
-void put_back(const pack::RunState& state, Bed& bed) {
+void put_back(const pack::RunState& state, const pack::Histories& histories, Bed& bed) {
   bed.progress = state.progress;
+  if (bed.scene.features.memory) bed.give(histories);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   if (bed.progress.moving_from > 0) bed.neighborhood.freeze(bed.store, bed.progress.moving_from);
   bed.balance();
@@ -126,12 +139,13 @@ Origin resume(const Files& files, const Options& options, Bed& bed) {
     log::info(fmt::format("no checkpoint {}: from the beginning", files.slots[0]));
     return {};
   }
-  const auto [state, path] = read_first(paths, passed_over, bed);
+  pack::Histories histories;
+  const auto [state, path] = read_first(paths, passed_over, bed, histories);
   if (!is_this_program(writer_of(state))) {
     log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
                           state.version, state.git, version(), git_id()));
   }
-  put_back(state, bed);
+  put_back(state, histories, bed);
   log::info(fmt::format("going on from {}: layer {}, step {}, {} particles", path, state.progress.first_ids.size(),
                         state.progress.steps, state.progress.count));
   const bool first = bed.comm.rank() == 0;

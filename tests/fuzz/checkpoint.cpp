@@ -43,6 +43,15 @@ particles::Store some_particles(int dimension, bool rotation) {
   return store;
 }
 
+/// With rotation: contacts of particles with each other and with walls.
+pack::Histories some_histories(int dimension, bool rotation) {
+  pack::Histories all{.features = {.dimension = dimension, .memory = rotation, .rolling = rotation}, .rows = {}};
+  for (GlobalId id = 1; rotation && id < static_cast<GlobalId>(particle_count); ++id) {
+    all.rows.push_back({.holder = id, .other = id % 3 == 0 ? -1 : id - 1, .values = {1e-5, -2e-5, 3e-6, 4e-7}});
+  }
+  return all;
+}
+
 report::LayerRow some_layer() {
   return {.inserted = particle_count,
           .total = particle_count,
@@ -68,6 +77,12 @@ template <class T>
 void append(std::string& bytes, const std::vector<T>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   bytes += '|';
+}
+
+std::string bytes_of(const pack::Histories& contacts) {
+  std::string bytes = std::to_string(contacts.features.memory) + std::to_string(contacts.features.rolling);
+  append(bytes, contacts.rows);
+  return bytes;
 }
 
 std::string bytes_of(const pack::PackRows& rows) {
@@ -125,9 +140,10 @@ std::string read_contents(const comm::Comm& alone, const Sample& sample, const s
   }
   const pack::RunState alike = pack::read_state(path);
   particles::Store store(particles::layout_of(sample.dimension, sample.rotation));
-  const pack::RunState state = pack::read_checkpoint(alone, path, store);
+  pack::Histories contacts;
+  const pack::RunState state = pack::read_checkpoint(alone, path, store, &contacts);
   demand(pack::to_text(state) == pack::to_text(alike), "two readers find two states");
-  return pack::to_text(state) + state.effective_input + bytes_of(store);
+  return pack::to_text(state) + state.effective_input + bytes_of(store) + bytes_of(contacts);
 }
 
 void write_sample(const comm::Comm& alone, const Sample& sample, const std::string& path) {
@@ -156,7 +172,7 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   state.progress.now.phase = pack::Phase::settling;
   state.progress.now.row = some_layer();
   const std::array<const particles::Store*, 1> stores{&store};
-  pack::write_checkpoint(alone, path, stores, state);
+  pack::write_checkpoint(alone, path, stores, state, some_histories(sample.dimension, sample.rotation));
 }
 
 class World {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -111,6 +112,35 @@ std::string bytes_of(const std::string& path) {
 
 void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
+/// Contacts of some particles with earlier ones and with a wall; those without rotation do not remember.
+Histories some_histories(int dimension, bool rotation, std::size_t count) {
+  Histories all{.features = {.dimension = dimension, .memory = rotation, .rolling = rotation && dimension == 3},
+                .rows = {}};
+  const auto stored = static_cast<std::size_t>(scene::stored_doubles(all.features));
+  for (GlobalId id = static_cast<GlobalId>(count) - 1; rotation && id > 0; id -= 2) {
+    for (const GlobalId other : {id - 1, id / 2, GlobalId{-1 - id % 5}}) {
+      if (other == id / 2 && id / 2 == id - 1) continue;
+      HistoryRow row{.holder = id, .other = other};
+      for (std::size_t c = 0; c < stored; ++c) row.values[c] = 1e-5 / static_cast<double>(id + 7 * other + 1000) - 1e-9;
+      all.rows.push_back(row);
+    }
+  }
+  return all;
+}
+
+bool same_rows(const std::vector<HistoryRow>& a, const std::vector<HistoryRow>& b) {
+  return std::ranges::equal(a, b, [](const HistoryRow& x, const HistoryRow& y) {
+    return x.holder == y.holder && x.other == y.other && x.values == y.values;
+  });
+}
+
+std::vector<HistoryRow> sorted(std::vector<HistoryRow> rows) {
+  std::ranges::sort(rows, [](const HistoryRow& x, const HistoryRow& y) {
+    return std::pair(x.holder, x.other) < std::pair(y.holder, y.other);
+  });
+  return rows;
+}
+
 class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
  protected:
   comm::Comm comm_{MPI_COMM_WORLD};
@@ -121,6 +151,7 @@ class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
   particles::Layout layout_ = particles::layout_of(dimension_, rotation_);
   std::vector<testing::Grain> grains_ = testing::some_grains(particle_count, dimension_);
   RunState state_ = some_state(dimension_, rotation_, particle_count);
+  Histories histories_ = some_histories(dimension_, rotation_, particle_count);
 
   /// The odd ids from one store, the even ones from another.
   void write(const comm::Comm& comm, const std::string& path, const particles::Store& store) const {
@@ -130,16 +161,32 @@ class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
       (id % 2 == 0 ? even : odd).add_record(id, store.record(i));
     }
     const std::array<const particles::Store*, 2> stores{&odd, &even};
-    write_checkpoint(comm, path, stores, state_);
+    Histories mine{.features = histories_.features, .rows = {}};  // dealt to the ranks, whoever has their particles
+    for (std::size_t k = 0; k < histories_.rows.size(); ++k) {
+      if (static_cast<int>(k) % comm.size() == comm.rank()) mine.rows.push_back(histories_.rows[k]);
+    }
+    write_checkpoint(comm, path, stores, state_, mine);
   }
   [[nodiscard]] std::uint64_t digest(const comm::Comm& comm, const particles::Store& store) const {
     return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(particles::digest(store))));
   }
+  /// Each at the rank that has its holder, by its ends.
+  void expect_histories(const particles::Store& store, const Histories& found) const {
+    EXPECT_EQ(found.features.memory, rotation_);
+    EXPECT_EQ(found.features.rolling, rotation_ && dimension_ == 3);
+    std::vector<HistoryRow> expected;
+    for (const HistoryRow& row : sorted(histories_.rows)) {
+      if (std::ranges::find(store.ids(), row.holder) != store.ids().end()) expected.push_back(row);
+    }
+    EXPECT_TRUE(same_rows(found.rows, expected));
+  }
   /// What `path` is refused for; none if it is taken, and then it is what was written.
   [[nodiscard]] std::optional<std::string> refusal(const std::string& path) const {
     particles::Store store(layout_);
+    Histories found;
     try {
-      const RunState state = read_checkpoint(alone_, path, store);
+      const RunState state = read_checkpoint(alone_, path, store, &found);
+      EXPECT_TRUE(same_rows(found.rows, sorted(histories_.rows)));
       EXPECT_EQ(digest(alone_, store), digest(alone_, testing::scattered(alone_, layout_, grains_, Spread::all)));
       EXPECT_EQ(numbers_of(state), numbers_of(state_));
       EXPECT_EQ(state.effective_input, state_.effective_input);
@@ -158,8 +205,10 @@ TEST_P(Checkpoint, GivesBackEveryBit) {
     const particles::Store store = testing::scattered(comm_, layout_, grains_, spread);
     write(comm_, path, store);
     particles::Store back(layout_);
-    expect_same(read_checkpoint(comm_, path, back), state_);
+    Histories contacts;
+    expect_same(read_checkpoint(comm_, path, back, &contacts), state_);
     EXPECT_EQ(digest(comm_, back), digest(comm_, store));
+    expect_histories(back, contacts);
     EXPECT_EQ(comm_.sum(std::int64_t{back.owned()}), static_cast<std::int64_t>(particle_count));
     expect_same(read_state(path), state_);
     comm_.barrier();
@@ -213,7 +262,13 @@ TEST_P(Checkpoint, AFlippedBitInAnyDatasetIsRefused) {
   const std::string whole = bytes_of(path);
   std::vector<std::string> names{
       "/state", "/effective_input", "/particles/id", "/particles/position", "/particles/radius", "/particles/velocity"};
-  if (rotation_) names.emplace_back("/particles/surface_speed");
+  if (rotation_) {
+    for (const char* name : {"/particles/surface_speed", "/contacts/holder", "/contacts/other"})
+      names.emplace_back(name);
+    for (const scene::Storing& what : scene::storings(histories_.features)) {
+      names.push_back("/contacts/" + std::string(what.name));
+    }
+  }
   int tried = 0, refused = 0;
   for (const std::string& name : names) {
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -253,6 +308,15 @@ TEST_P(Checkpoint, AFlippedBitAnywhereIsRefused) {
     refused += taken ? 0 : 1;
   }
   std::printf("count: bits flipped anywhere in checkpoints = %d, refused = %d\n", tried, refused);
+}
+
+// As the estimate tells it.
+TEST_P(Checkpoint, ItsBytesAreKnownBeforehand) {
+  const std::string path = folder_.file("a.hdf");
+  write(comm_, path, testing::scattered(comm_, layout_, grains_, Spread::all));
+  EXPECT_EQ(checkpoint_bytes(layout_, state_, histories_.features, std::ssize(histories_.rows)),
+            static_cast<std::int64_t>(std::filesystem::file_size(path)));
+  comm_.barrier();
 }
 
 TEST_P(Checkpoint, OtherFilesAreRefused) {

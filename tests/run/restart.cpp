@@ -30,7 +30,8 @@ struct Kind {
   int dimension;
   bool graded, periodic, near_field, rotation;
   int window;
-  bool soft_and_settled;  // layers end when at rest, softer than the final stage, which hardens them
+  bool soft_and_settled;                 // layers end when at rest, softer than the final stage, which hardens them
+  bool memory = false, rolling = false;  // of contacts
 };
 
 constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, false},
@@ -38,7 +39,11 @@ constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, fals
                            Kind{"near_field", 3, true, false, true, false, 0, false},
                            Kind{"discs_without_spin", 2, false, false, false, false, 0, false},
                            Kind{"window", 3, false, true, false, true, 1, false},
-                           Kind{"settled", 3, false, false, false, true, 2, true}};
+                           Kind{"settled", 3, false, false, false, true, 2, true},
+                           Kind{"memory", 3, false, false, false, true, 0, false, true},
+                           Kind{"memory_without_spin", 2, true, false, false, false, 0, false, true},
+                           Kind{"rolling_discs", 2, false, true, false, true, 1, false, true, true},
+                           Kind{"rolling_spheres", 3, true, true, false, true, 1, false, true, true}};
 
 constexpr std::int64_t layer_steps = 100;
 
@@ -75,6 +80,15 @@ input::Input scene_of(const Kind& kind) {
     in.dynamics.settled_hold = 0.0061;
     in.dynamics.settled_force = 10.0;
   }
+  if (kind.memory) {  // what a contact holds comes from many before: dense, and all the time in contact
+    in.contact.tangential = input::Tangential::mindlin;
+    in.layers.velocity[kind.dimension == 3 ? 2U : 1U] = -8.0;
+    in.jamming.gravity = 100.0;
+  }
+  if (kind.rolling) {
+    in.contact.rolling_friction = 0.1;
+    in.contact.twisting_friction = kind.dimension == 3 ? 0.1 : 0.0;
+  }
   in.output.log_every = 0.0007;
   in.checkpoint.every = "off";
   return in;
@@ -110,6 +124,9 @@ class Restart : public ::testing::TestWithParam<Kind> {
       world_.broadcast(0, (fs::temp_directory_path() / ("packmpi_restart_" + std::to_string(::getpid()))).string());
   input::Input in_ = scene_of(GetParam());
 
+  void SetUp() override {
+    if (world_.size() > 3 && !GetParam().memory) GTEST_SKIP() << "more ranks are for contacts that remember";
+  }
   void TearDown() override {
     world_.barrier();
     if (world_.rank() == 0) fs::remove_all(folder_);
@@ -221,6 +238,21 @@ class Restart : public ::testing::TestWithParam<Kind> {
     return whole;
   }
 
+  /// Its contacts remember if those of the scene do: in the middle of many of them.
+  void expect_contacts(std::int64_t step) const {
+    if (world_.rank() == 0) {
+      const Kind& kind = GetParam();
+      particles::Store store(particles::layout_of(kind.dimension, kind.rotation));
+      pack::Histories found;
+      (void)pack::read_checkpoint(comm::Comm(MPI_COMM_SELF), file("ckpt.A.hdf"), store, &found);
+      EXPECT_EQ(found.features.memory, kind.memory);
+      EXPECT_EQ(found.features.rolling, kind.rolling);
+      const std::size_t least = kind.memory && step >= 2 * layer_steps ? 5 : 0;
+      EXPECT_GE(found.rows.size(), least);
+    }
+    world_.barrier();
+  }
+
   Left left_;
   std::string words_;
 };
@@ -239,6 +271,7 @@ TEST_P(Restart, StoppedAnywhereOnOtherRanks) {
       EXPECT_EQ(run(before, kinds_of[turn++ % 3], [&](Options& o) { o.force = true, o.max_steps = stop; }),
                 ExitCode::stopped_early)
           << words_;
+      expect_contacts(stop);
       EXPECT_EQ(run(ranks, kinds_of[turn % 3], [](Options& o) { o.restart = "auto"; }), ExitCode::done) << words_;
       expect_same(left(), whole);
       EXPECT_FALSE(fs::exists(file("ckpt.A.hdf")) || fs::exists(file("ckpt.B.hdf")) || fs::exists(file("ckpt.json")));
@@ -452,6 +485,80 @@ TEST_P(RestartRules, DamagedCheckpointsAreToldAndNothingIsLost) {
   EXPECT_EQ(run(world_.size(), Decomposition::slab, [&](Options& o) { o.restart = file("nowhere"); }),
             ExitCode::bad_checkpoint);
   EXPECT_TRUE(fs::exists(file("ckpt.A.hdf")));
+}
+
+// A checkpoint of a stranger: every digest is right, and what it says cannot be.
+class Forged : public Restart {
+ protected:
+  using Change = std::function<void(std::vector<double>& radius, pack::Histories& contacts)>;
+
+  void expect_refused(const std::string& reason, const Change& change) {
+    const std::string path = file("ckpt.A.hdf");
+    EXPECT_EQ(run(1, Decomposition::slab, [](Options& o) { o.force = true, o.max_steps = layer_steps; }),
+              ExitCode::stopped_early);
+    if (world_.rank() == 0) forge(path, change);
+    world_.barrier();
+    for (const int ranks : {1, world_.size()}) {
+      EXPECT_EQ(run(ranks, Decomposition::slab, [&](Options& o) { o.restart = path; }), ExitCode::bad_checkpoint);
+      EXPECT_NE(words_.find(path), std::string::npos) << words_;
+      EXPECT_NE(words_.find(reason), std::string::npos) << words_;
+    }
+  }
+
+ private:
+  static void forge(const std::string& path, const Change& change) {
+    const comm::Comm alone(MPI_COMM_SELF);
+    particles::Store store(particles::layout_of(3, true)), forged(store.layout());
+    pack::Histories contacts;
+    const pack::RunState state = pack::read_checkpoint(alone, path, store, &contacts);
+    ASSERT_FALSE(contacts.rows.empty());
+    std::vector<double> radius;
+    for (LocalIndex i = 0; i < store.owned(); ++i) radius.push_back(store.radius(i));
+    change(radius, contacts);
+    for (LocalIndex i = 0; i < store.owned(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      forged.add(store.ids()[k], store.position(i), radius[k], store.velocity(i), store.spin(i));
+    }
+    const std::array<const particles::Store*, 1> stores{&forged};
+    pack::write_checkpoint(alone, path, stores, state, contacts);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(OneScene, Forged, ::testing::Values(kinds.back()), kind_name);
+
+TEST_P(Forged, RadiiOutsideOfTheScene) {
+  expect_refused("the radius 1e-300 m, the smallest of its scene is",
+                 [](auto& radius, auto&) { radius.back() = 1e-300; });
+  expect_refused("the radius 1 m, the largest of its scene is", [](auto& radius, auto&) { radius.front() = 1.0; });
+}
+
+TEST_P(Forged, ContactsWithEndsThatCannotBe) {
+  for (const GlobalId other : {GlobalId{1} << 40, GlobalId{-6}, INT64_MIN}) {
+    expect_refused("has ends that cannot be", [&](auto&, auto& contacts) { contacts.rows.back().other = other; });
+  }
+  expect_refused("has ends that cannot be",
+                 [](auto&, auto& contacts) { contacts.rows.back().other = contacts.rows.back().holder; });
+}
+
+TEST_P(Forged, ContactsThatAreThereTwice) {
+  expect_refused("is there twice", [](auto&, auto& contacts) { contacts.rows.push_back(contacts.rows.front()); });
+}
+
+TEST_P(Forged, SpringsThatAreNotFiniteOrTooLong) {
+  expect_refused("tangential_displacement that is not finite",
+                 [](auto&, auto& contacts) { contacts.rows.front().values[1] = std::nan(""); });
+  expect_refused("twisting_displacement that is not finite",
+                 [](auto&, auto& contacts) { contacts.rows.back().values[6] = HUGE_VAL; });
+  for (const std::size_t value : {0U, 4U, 6U}) {
+    expect_refused("friction holds at most",
+                   [&](auto&, auto& contacts) { contacts.rows.front().values[value] = -1.0; });
+  }
+}
+
+// Of a law that has no memory, or other springs.
+TEST_P(Forged, ContactsOfAnotherLaw) {
+  const char* const reason = "what its contacts remember is not what those of the scene do";
+  expect_refused(reason, [](auto&, auto& contacts) { contacts = {}; });
+  expect_refused(reason, [](auto&, auto& contacts) { contacts.features.rolling = false; });
 }
 
 TEST_P(RestartRules, AutoWithoutACheckpointBeginsAtTheBeginning) {

@@ -1,0 +1,30 @@
+/// Contacts that remember, in a checkpoint. Private to this module.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "comm/comm.hpp"
+#include "disk/sealed_file.hpp"
+#include "pack/checkpoint.hpp"
+
+namespace packmpi::pack {
+
+inline constexpr GlobalId most_walls = 5;  ///< of a container: see geometry::Surface
+
+/// What the contacts in the file have stored; without memory: there are none in it. Local.
+[[nodiscard]] scene::Features stored_in(const disk::SealedFile& file, int dimension);
+/// This rank's share of the rows in the file, wherever their particles are. Local. Throws Error(bad_checkpoint), words
+/// without the path, if ends are not those of two of so many `particles` or of one and a wall, or a number is not
+/// finite.
+[[nodiscard]] std::vector<HistoryRow> read_histories(const disk::SealedFile& file, const comm::Comm& comm,
+                                                     const scene::Features& features, GlobalId particles);
+
+/// By holder, and of a holder by the other end: the order of the file. Local.
+void sort_by_ends(std::vector<HistoryRow>& rows);
+/// Throws Error(bad_checkpoint), words without the path, if a contact is there twice. Local.
+void check_once(const std::vector<HistoryRow>& sorted);
+
+/// A number of the bits of these rows that depends on no order: sums over ranks, mod 2^64, are that of all rows. Local.
+[[nodiscard]] std::uint64_t digest(const Histories& histories);
+
+}  // namespace packmpi::pack
