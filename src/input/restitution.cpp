@@ -45,15 +45,18 @@ double angle_over_sine(double zeta) {
     return 1.0 + x * (1.0 / 3.0 + x * (2.0 / 15.0 + x * (2.0 / 35.0 + x * (8.0 / 315.0))));
   }
   const double root = std::sqrt(std::abs(1.0 - zeta * zeta));
-  return (zeta < 1.0 ? std::acos(zeta) : std::acosh(zeta)) / root;
+  const double angle =
+      zeta < 1.0 ? 0.5 * std::numbers::pi - elementary::arcsine(zeta) : elementary::logarithm(zeta + root);
+  return angle / root;
 }
 
 }  // namespace
 
 double restitution_of(double damping_ratio, bool tension_cutoff) {
   const double zeta = share_of_critical() * damping_ratio;
-  if (!tension_cutoff) return zeta < 1.0 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta)) : 0.0;
-  return std::exp(-2.0 * zeta * angle_over_sine(zeta));
+  if (!tension_cutoff)
+    return zeta < 1.0 ? elementary::exponential(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta)) : 0.0;
+  return elementary::exponential(-2.0 * zeta * angle_over_sine(zeta));
 }
 
 double damping_of(double restitution, bool tension_cutoff) {

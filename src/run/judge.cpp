@@ -57,7 +57,7 @@ std::string why_it_moves(const scene::Scene& scene) {
 
 // Overlaps go with E^(-2/3).
 std::string how_much_harder(const scene::Scene& scene, double overlap, double limit) {
-  const double modulus = scene.in.particles.youngs_modulus * std::pow(overlap / limit, 1.5);
+  const double modulus = scene.in.particles.youngs_modulus * (overlap / limit) * std::sqrt(overlap / limit);
   return fmt::format("particles are too soft for their weight: use particles.youngs_modulus = {:.1e} Pa or more",
                      1.1 * modulus);
 }

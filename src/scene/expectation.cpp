@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.hpp"
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
 #include "scene/limits.hpp"
@@ -140,12 +141,13 @@ double expected_overlap(const Scene& scene, double youngs_modulus) {
   const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing_height(scene);
   const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
                          (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);
-  const double root = std::cbrt(squeeze);
+  const double root = elementary::cube_root(squeeze);
   return uneven * mean_over_depth * root * root;
 }
 
 double modulus_for(const Scene& scene, double overlap, double youngs_modulus) {
-  return youngs_modulus * std::pow(expected_overlap(scene, youngs_modulus) / overlap, 1.5);
+  const double times = expected_overlap(scene, youngs_modulus) / overlap;
+  return youngs_modulus * times * std::sqrt(times);
 }
 
 }  // namespace packmpi::scene

@@ -129,7 +129,7 @@ TEST_F(Guards, CheckFindsAllOfThemAtOnce) {
   EXPECT_THROW(bed_.check(), Error);
 }
 
-// Falls for a while, then is far too soft for its weight.
+// Falls for a while, then is far too soft for its impact.
 const char* const soft = R"(
 [container]
 size = [0.2, 0.2, 0.1]
@@ -144,7 +144,7 @@ fraction = 0.05
 duration = 1.0
 velocity = [0.0, 0.0, -10.0]
 [jamming]
-gravity = 100.0
+gravity = 1.0
 [dynamics]
 time_step = 1e-5
 [checkpoint]

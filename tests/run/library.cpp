@@ -20,7 +20,7 @@ poisson_ratio = 0.25
 radius = { distribution = "equal", value = 0.02 }
 [layers]
 thickness = 0.06
-fraction = 0.2
+fraction = 0.15
 duration = 0.02
 [jamming]
 gravity = 5.0

@@ -44,6 +44,8 @@ twisting_friction = {rolling}
 [dynamics]
 rotation = {rotation}
 time_step = {step}
+[rest]
+wait = 0.0   # the trajectory is compared, not the bed
 """
 # name: boundary, rolling and twisting friction, rotation
 CASES = {"periodic": ("periodic", 0.0, True), "walled": ("wall", 0.0, True), "rolling": ("wall", 0.1, True), "no_rotation": ("periodic", 0.0, False)}

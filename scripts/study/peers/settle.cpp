@@ -154,7 +154,9 @@ class Pile {
     const double normal = std::max(0.0, 4.0 / 3.0 * e * a * overlap + 2 * s_.xi * std::sqrt(2 * e * a * m) * closing);
     const double k = 8 * g * a, eta = 2 * s_.xi * std::sqrt(k * (s_.rotation ? 2.0 / 7.0 : 1.0) * m);
     // A contact that grows keeps its force, one that shrinks its displacement, so that no closed cycle gives energy.
-    const double kept = a > memory.a ? memory.a / a : 1.0;
+    // The radii's ratio is taken as doc/theory.md has it, from that of the overlaps, to the second order of the step.
+    const double before = memory.a / a * (memory.a / a);
+    const double kept = before < 1.0 ? 2 * before / (1 + before) : 1.0;
     memory.slide = kept * memory.slide, memory.roll = kept * memory.roll, memory.twist *= kept, memory.a = a;
     const Vec slip = u + closing * n;
     Load load;
