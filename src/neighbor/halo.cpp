@@ -104,7 +104,14 @@ class Halo::Graph {
 Halo::Halo(const comm::Comm& comm, const particles::Layout& layout)
     : comm_(&comm), layout_(layout), unit_(std::make_unique<Unit>(layout.live_doubles())) {}
 
-Halo::~Halo() = default;
+// An error between begin() and end() unwinds past messages that may still arrive: what they are written into must live
+// as long as the process, which that error ends.
+Halo::~Halo() {
+  for (Part& part : parts_) {
+    static auto& abandoned = *new std::vector<Part>;
+    if (part.under_way) abandoned.push_back(std::move(part));
+  }
+}
 
 void Halo::plan(particles::Store& store, const std::vector<Sends>& sends) {
   assert(!under_way(Half::first) && !under_way(Half::second));
