@@ -5,7 +5,7 @@ usage: scripts/study/reproduce.py [--seeds N] [--examples 5.1 5.3 ...] [--jobs N
 
 Runs build/packmpi on input/paper_5_*.toml, rotation on and off, seeds 1 .. N, one rank a run, as many runs at a time as
 there are cores. Runs that are done are kept in results/reproduction and not repeated while the scene and the program's
-sources are the same: stop it at any time and start it again. The full set takes about a quarter of an hour of one core.
+sources are the same: stop it at any time and start it again. The full set takes about an hour of one core.
 """
 import argparse
 import csv

@@ -32,6 +32,9 @@ expect 0 'packmpi SCENE.toml' --help
 expect 2 'SCENE is required' run
 expect 2 'packmpi report is one process: start it without mpirun' report some.hdf
 expect 2 'no-such.toml' no-such.toml
+for tool in info analyze 'convert --to csv'; do expect 5 'no-such.hdf' $tool no-such.hdf; done
+expect 6 'no-such.hdf' "${tiny[@]}" -o out -q --restart no-such.hdf
+must rm -rf out
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
 expect 0 'is valid' check "${tiny[@]}"
