@@ -64,7 +64,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
-        scene::particles_a_layer(scene) * scene::expected_layers(scene, scene::expected_fraction(scene).value));
+        scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     const double modulus = scene.in.particles.youngs_modulus;
     words += fmt::format("# mean overlap at rest about {:.2g} radii; 1 % would be at a modulus of {:.1e} Pa\n",
                          scene::expected_overlap(scene, modulus), scene::modulus_for(scene, 0.01, modulus));

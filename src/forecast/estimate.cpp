@@ -40,30 +40,41 @@ scene::BedFraction fraction_of(const scene::Scene& scene, const Question& questi
   return scene::expected_fraction(scene);
 }
 
+double mean_volume(const scene::Scene& scene) {
+  return geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
+}
+
 // So many layers of `particles` particles on the floor of the scene; the layer's thickness is fitted so that whole ones
 // make it.
 struct Fitted {
   double thickness, height;
 };
 Fitted fit_height(const scene::Scene& scene, double particles, double layers, double fraction) {
-  const double mean =
-      geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
-  const double solid = (particles / layers - margin) * mean;  // of a layer: insertion overshoots by half a particle
+  const double solid =
+      (particles / layers - margin) * mean_volume(scene);  // of a layer: insertion overshoots by half a particle
   return {.thickness = solid / (scene.in.layers.fraction * scene.container.floor_area()),
           .height = (layers - margin) * solid / (fraction * scene.container.floor_area())};
 }
 
+// H_d below which so many particles fit (layers.region = "container").
+double fit_room(const scene::Scene& scene, double particles, double fraction) {
+  const double target = scene.container.height();
+  const double left = target - scene::height_below(scene, target);
+  return particles * mean_volume(scene) / (scene.container.floor_area() * fraction) + left;
+}
+
 // Area of the floor on which the scene's height takes so many particles.
 double fit_floor(const scene::Scene& scene, double particles, double fraction) {
+  if (scene.in.layers.region == input::RegionRule::container) {
+    return particles * mean_volume(scene) / (fraction * scene::height_below(scene, scene.container.height()));
+  }
   const double layers = static_cast<double>(scene::expected_layers(scene, fraction));
-  const double mean =
-      geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
   const double a_layer = particles / layers - margin;
   if (!(a_layer > 0.0)) {
     refuse(fmt::format("{} particles are less than one for each of {:.0f} layers; lower the height or thicken layers",
                        particles, layers));
   }
-  return a_layer * mean / (scene.in.layers.fraction * scene.in.layers.thickness);
+  return a_layer * mean_volume(scene) / (scene.in.layers.fraction * scene.in.layers.thickness);
 }
 
 std::string list(const std::vector<double>& numbers) {
@@ -134,6 +145,13 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
   if (unknown == Unknown::floor) {
     for (int turn = 0; turn < turns; ++turn) {
       scale_floor(question, fit_floor(scene, particles, fraction_of(scene, question).value), size);
+      scene = changed(comm, source, {size_key(size)});
+    }
+    return scene;
+  }
+  if (scene.in.layers.region == input::RegionRule::container) {
+    for (int turn = 0; turn < turns; ++turn) {
+      size.back() = fit_room(scene, particles, fraction_of(scene, question).value);
       scene = changed(comm, source, {size_key(size)});
     }
     return scene;
@@ -240,18 +258,19 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
 }
 
 void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, report::Estimate& e) {
-  const auto layers = [&](double shift) {
-    return scene::expected_layers(scene, std::clamp(fraction.value + shift, 1e-3, 1.0));
+  const auto filling = [&](double shift) {
+    return scene::expected_filling(scene, std::clamp(fraction.value + shift, 1e-3, 1.0));
   };
+  const scene::Filling most = filling(fraction.error), least = filling(-fraction.error), usual = filling(0.0);
   e.a_layer = scene::particles_a_layer(scene);
-  e.layers = {layers(0.0), layers(-fraction.error), layers(fraction.error)};
+  e.layers = {usual.layers, least.layers, most.layers};
   const auto by_chance = [&](std::int64_t count) {  // two standard deviations
     return std::llround(2.0 * scene::deviation_of_count(scene, static_cast<double>(count)));
   };
-  e.particles = {e.layers.value * e.a_layer, e.layers.least * e.a_layer, e.layers.most * e.a_layer};
-  e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least));
-  e.particles.most += by_chance(e.particles.most);
-  e.height = static_cast<double>(e.layers.value) * scene::rise_of_layer(scene, fraction.value);
+  e.particles = {usual.particles, least.particles, most.particles};
+  e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least) - least.uncertainty);
+  e.particles.most += by_chance(e.particles.most) + most.uncertainty;
+  e.height = usual.height;
 }
 
 void add_steps(const scene::Scene& scene, report::Estimate& e) {
@@ -314,7 +333,7 @@ report::Estimate estimate(const comm::Comm& comm, const std::string& path, const
   e.found = names.at(static_cast<std::size_t>(unknown));
   e.size = scene.in.container.size;
   e.layer_thickness = scene.in.layers.thickness;
-  e.thickness_changed = unknown == Unknown::height;
+  e.thickness_changed = unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open;
   e.fraction = fraction.value;
   e.fraction_error = fraction.error;
   e.fraction_given = question.fraction.has_value();

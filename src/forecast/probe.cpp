@@ -22,6 +22,7 @@ constexpr std::int64_t implicit_steps = 2;
 // The same scene on a smaller floor; if that is still too much, with thinner layers.
 scene::Scene small_scene(const scene::Scene& scene) {
   input::Input in = scene.in;
+  in.layers.region = input::RegionRule::open;  // whole layers are what most of a run is
   const auto axes = static_cast<std::size_t>(scene.container.lateral_axes());
   const double share = particles_wanted / static_cast<double>(scene::particles_a_layer(scene));
   const double factor = axes == 2 ? std::sqrt(share) : share;
@@ -44,10 +45,7 @@ struct Clock {
 void insert(run::Bed& bed, Clock& clock) {
   const Stopwatch watch;
   bed.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(bed.progress.first_ids.size()),
-                                .bottom = bed.top(),
-                                .thickness = bed.scene.in.layers.thickness,
-                                .first_id = bed.progress.count};
+  const rsa::LayerRegion region = bed.next_region();
   bed.progress.first_ids.push_back(bed.progress.count);
   bed.progress.count += rsa::insert(bed.comm, bed.scene, bed.ownership, region, bed.store).inserted;
   clock.inserting += watch.seconds();

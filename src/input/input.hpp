@@ -17,6 +17,7 @@ enum class SizeDistribution { equal, gaussian, uniform, lognormal, weibull, bidi
 enum class Weighting { number, mass };
 enum class Interpolation { log, linear };
 enum class HeightRule { surface, highest };
+enum class RegionRule { open, container };
 enum class FrictionVelocity { contact, centre };
 enum class Tangential { sliding, mindlin };
 enum class Regularisation { stop, shared, viscous, none };
@@ -64,6 +65,7 @@ struct Layers {
   std::optional<double> youngs_modulus;  ///< [Pa] while layers settle; none: "auto"
   std::optional<double> time_step;       ///< [s] while layers settle; none: "auto"
   HeightRule height = HeightRule::surface;
+  RegionRule region = RegionRule::open;
   Vec3 velocity{};            ///< [m/s] at insertion
   Vec3 spin{};                ///< [rad/s] at insertion; 2D: only z
   std::int64_t attempts = 0;  ///< trials a particle may have before RSA gives up

@@ -206,6 +206,9 @@ std::vector<Key> layer_keys() {
          "Time step while layers settle; \"auto\": dynamics.time_step, or for softer particles the limit of eq. (23)."),
     word("layers.height", at(layers, &Layers::height), "surface",
          "What must reach H_d: \"surface\", the mean over lateral columns of the highest top; \"highest\", the one highest top."),
+    word("layers.region", at(layers, &Layers::region), "open",
+         "Where a layer's region ends: \"open\", h_0 above the bed, whatever H_d is; \"container\", at H_d at most, and a scene is full "
+         "when no particle fits below H_d."),
     reals("layers.velocity", at(layers, &Layers::velocity), Count::axes, velocity, any, "0.0",
          "Velocity of a particle when inserted; the last entry is vertical, upward."),
     reals("layers.spin", at(layers, &Layers::spin), Count::spin_axes, angular_velocity, any, "0.0",

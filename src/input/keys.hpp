@@ -20,8 +20,8 @@ namespace packmpi::input {
 /// Where a key's value goes. Its type decides what the file may say.
 using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
                           Vec3*, std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*,
-                          SizeDistribution*, Weighting*, Interpolation*, HeightRule*, FrictionVelocity*, Tangential*,
-                          Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
+                          SizeDistribution*, Weighting*, Interpolation*, HeightRule*, RegionRule*, FrictionVelocity*,
+                          Tangential*, Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {

@@ -22,6 +22,8 @@ inline constexpr std::array<std::string_view, 2> words_of<Interpolation>{"log", 
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<HeightRule>{"surface", "highest"};
 template <>
+inline constexpr std::array<std::string_view, 2> words_of<RegionRule>{"open", "container"};
+template <>
 inline constexpr std::array<std::string_view, 2> words_of<FrictionVelocity>{"contact", "centre"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Tangential>{"sliding", "mindlin"};

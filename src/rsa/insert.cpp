@@ -71,6 +71,29 @@ void check_room(const comm::Comm& comm, const scene::Scene& scene, const LayerRe
                                   region.thickness, diameter));
 }
 
+// What stopped a layer.
+struct Stuck {
+  int size_class;
+  std::uint32_t attempts;
+};
+
+// Collective. The layer's first `asked` particles, class by class; adds to `got`.
+std::optional<Stuck> place(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
+                           const LayerRegion& region, std::int64_t asked, particles::Store& store, Insertion& got,
+                           const std::function<void()>& between_volleys) {
+  Filling filling(comm, scene, ownership, region, asked);
+  const Filling::Counts counts = filling.count();
+  std::optional<Stuck> stuck;
+  for (int k = 0; k < size_classes && !stuck; ++k) {
+    filling.begin(k);
+    const auto failed = place_class(comm, counts[static_cast<std::size_t>(k)], attempt_limit(scene), filling, store,
+                                    got, between_volleys);
+    if (failed) stuck = {k, *failed};
+  }
+  got.solid_volume = filling.solid_volume();
+  return stuck;
+}
+
 }  // namespace
 
 bool wide_classes(const scene::Sizes& sizes) {
@@ -103,18 +126,14 @@ Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene:
   check_room(comm, scene, region);
   Insertion got;
   got.target = particles_needed(comm, scene, region);
-  Filling filling(comm, scene, ownership, region, got.target);
-  const Filling::Counts counts = filling.count();
-  for (int k = 0; k < size_classes; ++k) {
-    filling.begin(k);
-    const auto failed = place_class(comm, counts[static_cast<std::size_t>(k)], attempt_limit(scene), filling, store,
-                                    got, between_volleys);
-    if (!failed) continue;
-    got.solid_volume = filling.solid_volume();
-    give_up(comm, scene, region, got, k, *failed);
+  const LocalIndex before = store.owned();
+  for (std::int64_t asked = got.target;; asked = std::max<std::int64_t>(1, asked * 9 / 10)) {
+    got.inserted = 0;
+    const auto stuck = place(comm, scene, ownership, region, asked, store, got, between_volleys);
+    if (!stuck) return got;
+    if (!region.clipped) give_up(comm, scene, region, got, stuck->size_class, stuck->attempts);
+    store.keep_first(before);
   }
-  got.solid_volume = filling.solid_volume();
-  return got;
 }
 
 }  // namespace packmpi::rsa

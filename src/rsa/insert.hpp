@@ -16,6 +16,7 @@ struct LayerRegion {
   double bottom = 0.0;      ///< [m] T: top of the highest particle so far
   double thickness = 0.0;   ///< [m] h_0
   GlobalId first_id = 0;    ///< id of the layer's particle 0; ids ascend with the particle index
+  bool clipped = false;     ///< ends at H_d: it may have to do with fewer particles than phi_0 asks for
 };
 
 /// What came of it; the same on all ranks and for any number of them.
@@ -46,7 +47,8 @@ inline constexpr int size_classes = 8;
 /// (size class, attempt, particle); a trial is kept if it overlaps none kept before it. Appends the placed particles of
 /// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming target, placed and trials, if a
 /// particle is unplaced after layers.attempts trials; or earlier, once so few trials find room that the attempts left
-/// cannot suffice. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws
+/// cannot suffice; a clipped layer begins anew with nine tenths of its particles instead, the first ones, so that the
+/// sizes are still those drawn. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws
 /// leaves with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory, messages only to
 /// the ranks where trials fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,

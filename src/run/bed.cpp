@@ -59,6 +59,22 @@ double Bed::surface() const {
 
 double Bed::height() const { return scene.in.layers.height == input::HeightRule::highest ? top() : surface(); }
 
+rsa::LayerRegion Bed::next_region() const {
+  const double bottom = top(), whole = scene.in.layers.thickness;
+  const double left = scene.container.height() - bottom;
+  const bool clipped = scene.in.layers.region == input::RegionRule::container && left < whole;
+  return {.layer = static_cast<std::uint32_t>(progress.first_ids.size()),
+          .bottom = bottom,
+          .thickness = clipped ? left : whole,
+          .first_id = progress.count,
+          .clipped = clipped};
+}
+
+bool Bed::full() const {
+  if (scene.in.layers.region == input::RegionRule::open) return false;
+  return next_region().thickness < 2.0 * scene.sizes.largest();
+}
+
 observe::Bulk Bed::bulk() const { return observe::bulk_of(scene, surface()); }
 
 void Bed::balance() {

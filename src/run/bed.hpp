@@ -10,6 +10,7 @@
 #include "pack/checkpoint.hpp"
 #include "pack/progress.hpp"
 #include "particles/store.hpp"
+#include "rsa/insert.hpp"
 #include "scene/ownership.hpp"
 #include "scene/scene.hpp"
 
@@ -48,6 +49,11 @@ struct Bed {
   [[nodiscard]] double top() const;      ///< [m] highest top, frozen or not. Collective
   [[nodiscard]] double surface() const;  ///< [m] mean over columns of the highest top, frozen or not. Collective
   [[nodiscard]] double height() const;   ///< [m] of the bed by the scene's rule. Collective
+
+  /// Where the next layer goes: from the highest top, by layers.thickness or to H_d (layers.region). Collective.
+  [[nodiscard]] rsa::LayerRegion next_region() const;
+  /// True if no layer fits below H_d any more; never with an open region. Collective.
+  [[nodiscard]] bool full() const;
 
   [[nodiscard]] observe::Bulk bulk() const;  ///< by its surface, frozen or not. Collective
 

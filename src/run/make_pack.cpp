@@ -34,10 +34,7 @@ void insert_layer(Bed& bed, Keeper& keeper) {
   const scene::Scene& scene = bed.scene;
   pack::Progress& at = bed.progress;
   bed.store.set_ghosts(0);
-  const rsa::LayerRegion region{.layer = static_cast<std::uint32_t>(at.first_ids.size()),
-                                .bottom = bed.top(),
-                                .thickness = scene.in.layers.thickness,
-                                .first_id = at.count};
+  const rsa::LayerRegion region = bed.next_region();
   const LocalIndex before = bed.store.owned();
   const auto look = [&] { keeper.look_while_inserting(before); };
   const Stopwatch watch;
@@ -130,14 +127,18 @@ double final_height(const scene::Scene& scene, const pack::Progress& at) {
   return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
+// Collective. Does the bed take another layer?
+bool takes_more(const Bed& bed) {
+  if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene.in)) return false;
+  if (bed.scene.in.layers.region == input::RegionRule::container) return !bed.full();
+  return final_height(bed.scene, bed.progress) < bed.scene.container.height();
+}
+
 // The loop of Algorithm 1, and the final stage; more layers if the bed sank in it. From where bed.progress says.
 // Bounded.
 void fill(Bed& bed, Journal& journal, Keeper& keeper) {
   pack::Progress& at = bed.progress;
-  const std::int64_t most = scene::most_layers(bed.scene.in);
-  const auto more = [&] {
-    return final_height(bed.scene, at) < bed.scene.container.height() && std::ssize(at.layers) < most;
-  };
+  const auto more = [&] { return takes_more(bed); };
   while (at.now.phase != pack::Phase::insertion || more()) {
     if (at.now.phase == pack::Phase::relaxation) {
       relax(bed, journal, keeper);

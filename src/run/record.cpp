@@ -82,8 +82,9 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   const pack::Progress& at = bed.progress;
   record.particles = at.count;
   record.height = at.height;
-  record.reached = at.height >= record.target_height;
-  record.stop_reason = record.reached ? "height" : "layers.maximum";
+  const bool full = bed.full();
+  record.reached = full || at.height >= record.target_height;
+  record.stop_reason = full ? "full" : record.reached ? "height" : "layers.maximum";
   record.compaction_rate = at.compaction_rate;
   record.layers = at.layers;
   record.relaxations = at.relaxations;

@@ -29,6 +29,8 @@ constexpr double most_added = 0.25;  // beyond what that formula was found for
 // What is missing beside a side wall, in mean diameters; at the surface, in largest diameters, of equal particles and
 // of others.
 constexpr double missing_at_walls = 0.27, missing_at_surface = 0.12, missing_at_uneven_surface = 0.24;
+// The highest top over the mean surface, in mean diameters: 0.9 to 1.3 (doc/estimate.md).
+constexpr double roughness = 1.1;
 constexpr double known = 0.01, less_known = 0.025;  // error of spheres like those measured, and of all else
 
 double by_friction(const ByFriction& values, double friction) {
@@ -131,6 +133,34 @@ double rise_of_layer(const Scene& scene, double fraction) {
 std::int64_t expected_layers(const Scene& scene, double fraction) {
   const double layers = std::ceil(scene.container.height() / rise_of_layer(scene, fraction) - 1e-9);
   return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene.in));
+}
+
+double height_below(const Scene& scene, double target) {
+  const double radius = scene.sizes.mean();
+  return std::max(radius, target - roughness * 2.0 * radius - scene.sizes.largest());
+}
+
+Filling expected_filling(const Scene& scene, double fraction) {
+  const double target = scene.container.height();
+  if (scene.in.layers.region == input::RegionRule::open) {
+    const std::int64_t layers = expected_layers(scene, fraction);
+    return {.layers = layers,
+            .particles = layers * particles_a_layer(scene),
+            .height = static_cast<double>(layers) * rise_of_layer(scene, fraction)};
+  }
+  Filling filling;
+  double surface = 0.0, top = 0.0;
+  while (target - top >= 2.0 * scene.sizes.largest() && filling.layers < most_layers(scene.in)) {
+    surface += scene.in.layers.fraction * std::min(scene.in.layers.thickness, target - top) / fraction;
+    top = surface + roughness * 2.0 * scene.sizes.mean();
+    ++filling.layers;
+  }
+  const double a_metre = scene.container.floor_area() * fraction / mean_volume(scene);  // particles
+  const bool full = target - top < 2.0 * scene.sizes.largest();
+  filling.height = full ? height_below(scene, target) : surface;
+  filling.particles = std::max<std::int64_t>(1, std::llround(a_metre * filling.height));
+  filling.uncertainty = full ? std::llround(a_metre * scene.sizes.largest()) : 0;
+  return filling;
 }
 
 double expected_overlap(const Scene& scene, double youngs_modulus) {

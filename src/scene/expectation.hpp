@@ -29,6 +29,20 @@ struct BedFraction {
 /// Layers that fill the scene's height at this solid fraction; layers.maximum at most.
 [[nodiscard]] std::int64_t expected_layers(const Scene& scene, double fraction);
 
+/// What a scene is filled with.
+struct Filling {
+  std::int64_t layers = 0, particles = 0;
+  double height = 0.0;           ///< [m]
+  std::int64_t uncertainty = 0;  ///< particles more or less that the last layer may come to, at a known fraction
+};
+/// At this solid fraction: whole layers until the bed has the scene's height; or with layers.region = "container" what
+/// fits below it, the last layers ever thinner. Local, pure.
+[[nodiscard]] Filling expected_filling(const Scene& scene, double fraction);
+
+/// Height [m] of the bed below H_d with layers.region = "container": the roughness of its surface is left, and half of
+/// the diameter that no layer fits into any more.
+[[nodiscard]] double height_below(const Scene& scene, double target);
+
 /// Mean overlap of touching particles over their radius in a bed of the scene's height that rests under its weight, at
 /// this modulus [Pa]: Hertz contacts under the mean force that bears what is above, depth by depth; side walls bear
 /// what Janssen's formula gives them. Within a fifth of what packs come to (doc/theory.md, "Rest"). 0 without gravity.

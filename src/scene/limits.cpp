@@ -7,6 +7,7 @@
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "input/radius_range.hpp"
 #include "input/time_step.hpp"
 
 namespace packmpi::scene {
@@ -82,8 +83,14 @@ double near_speed(const Scene& scene) {
 
 std::int64_t most_layers(const input::Input& in) {
   if (in.layers.maximum > 0) return in.layers.maximum;
-  return static_cast<std::int64_t>(std::ceil(in.container.size.back() / (in.layers.fraction * in.layers.thickness))) +
-         2;
+  const input::Layers& layers = in.layers;
+  const auto whole =
+      static_cast<std::int64_t>(std::ceil(in.container.size.back() / (layers.fraction * layers.thickness))) + 2;
+  if (layers.region == input::RegionRule::open) return whole;
+  // Each of those that end at H_d leaves 1 - phi_0 of the room at most, down to a diameter; twice that, as they may
+  // hold less than phi_0.
+  const double diameters = 0.5 * layers.thickness / input::radius_range(in.particles.radius).largest;
+  return whole + 2 * static_cast<std::int64_t>(std::ceil(std::log(diameters) / layers.fraction)) + 2;
 }
 
 double speed_bound(const Scene& scene) {

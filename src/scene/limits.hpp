@@ -6,7 +6,8 @@
 
 namespace packmpi::scene {
 
-/// Every layer adds phi_0 h_0 of solid and no bed is denser than solid: more layers than this never come to H_d.
+/// Every layer adds phi_0 h_0 of solid and no bed is denser than solid: more layers than this never come to H_d, nor
+/// more of those that end there.
 [[nodiscard]] std::int64_t most_layers(const input::Input& in);
 
 /// What no particle of a valid run comes near [m/s]: 16 times what falls, inserted speeds, fluid and near field can

@@ -135,7 +135,8 @@ TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
   ASSERT_EQ(e.layers.value, 1);
   EXPECT_NEAR(static_cast<double>(e.checkpoint_bytes), static_cast<double>(bytes), 0.02 * static_cast<double>(bytes));
   const report::RunRecord record = run::make_pack(comm_, scene(set), options());
-  const std::int64_t contacts = std::llround(0.5 * record.rest.network.coordination * static_cast<double>(record.particles));
+  const std::int64_t contacts =
+      std::llround(0.5 * record.rest.network.coordination * static_cast<double>(record.particles));
   EXPECT_GT(contacts, 0);
   EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts, observe::map_columns(scene(set))),
             static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
@@ -198,6 +199,22 @@ TEST_F(Estimates, StepsOfTheMovingParticlesAreThoseOfTheLoop) {
       steps += 2000 * 10 * (window > 0 ? std::min<std::int64_t>(window, layer) : layer);
     EXPECT_EQ(particle_steps_of(s, 7, 10), steps + 2000 * 70) << window;
   }
+}
+
+// Layers that end at H_d: what fits below it, and the height and the floor for as many.
+TEST_F(Estimates, AContainerThatIsFilledToItsHeight) {
+  const Set set{"layers.region=container", "container.size=[0.4,0.4,0.3]"};
+  const report::Estimate e = of(without_probe({}), set);
+  const report::RunRecord record = run::make_pack(comm_, scene(set), options(set));
+  EXPECT_GE(record.particles, e.particles.least);
+  EXPECT_LE(record.particles, e.particles.most);
+  EXPECT_NEAR(static_cast<double>(std::ssize(record.layers)), static_cast<double>(e.layers.value), 1.0);
+  EXPECT_LT(e.particles.value, of(without_probe({}), {"container.size=[0.4,0.4,0.3]"}).particles.value);
+  const report::Estimate higher = of(without_probe({.particles = 2000}), set);
+  EXPECT_NEAR(static_cast<double>(higher.particles.value), 2000.0, 2.0);
+  EXPECT_EQ(higher.layer_thickness, 0.1);
+  const report::Estimate wider = of(without_probe({.particles = 2000, .height = 0.3}), set);
+  EXPECT_NEAR(static_cast<double>(wider.particles.value), 2000.0, 2.0);
 }
 
 TEST_F(Estimates, TheFractionIsThatOfKnownPacks) {

@@ -53,6 +53,7 @@ thickness = 0.2
 fraction = "40 %"
 duration = "500 ms"
 height = "highest"
+region = "container"
 velocity = [0.1, "-5 cm/s"]
 spin = [3.0]
 attempts = 77
@@ -128,6 +129,7 @@ TEST(GoodInput, EveryGeneralKeyArrives) {
   EXPECT_EQ(in.layers.fraction, 0.4);
   EXPECT_EQ(in.layers.duration, 0.5);
   EXPECT_EQ(in.layers.height, HeightRule::highest);
+  EXPECT_EQ(in.layers.region, RegionRule::container);
   EXPECT_EQ(in.layers.velocity, (Vec3{0.1, -0.05, 0.0}));
   EXPECT_EQ(in.layers.spin, (Vec3{0.0, 0.0, 3.0}));
   EXPECT_EQ(in.layers.attempts, 77);
@@ -179,6 +181,7 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(in.container.boundary, (std::vector<Boundary>{Boundary::wall, Boundary::wall}));
   EXPECT_EQ(in.layers.duration, 1.0);
   EXPECT_EQ(in.layers.height, HeightRule::surface);
+  EXPECT_EQ(in.layers.region, RegionRule::open);
   EXPECT_EQ(in.layers.velocity, Vec3{});
   EXPECT_EQ(in.layers.spin, Vec3{});
   EXPECT_EQ(in.layers.attempts, 10000);

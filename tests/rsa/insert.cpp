@@ -184,6 +184,29 @@ TEST(Insert, LeftBetweenVolleysAndBegunAnew) {
   }
 }
 
+// A layer that ends at H_d and cannot be filled to phi_0 is that of a scene that asks for fewer particles.
+TEST(Insert, ClippedLayerTakesTheFirstOfItsParticles) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const int dimension : {2, 3}) {
+    const Vec3 size = dimension == 3 ? Vec3{1.0, 0.8, 1.0} : Vec3{3.0, 1.0, 0.0};
+    const double fraction = dimension == 3 ? 0.42 : 0.6;
+    const scene::Scene scene =
+        rsa_scene(dimension, size, walls, gaussian_radius(0.03, 0.003, 0.021, 0.039), fraction, 500);
+    const rsa::LayerRegion region{.layer = 4, .bottom = 0.2, .thickness = 0.15, .first_id = 70, .clipped = true};
+    const Ownership ownership(comm, test::rsa_grid(scene), Decomposition::slab);
+    particles::Store store(scene.features.layout());
+    const rsa::Insertion got = rsa::insert(comm, scene, ownership, region, store);
+    EXPECT_LT(got.inserted, got.target);
+    EXPECT_GT(got.inserted, got.target / 2);
+    EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), got.inserted);
+    scene::Scene less = scene;
+    less.in.layers.fraction = got.solid_volume / (scene.container.floor_area() * region.thickness) * (1.0 - 1e-12);
+    const oracle::Rsa serial = oracle::insert(less, region, 500);
+    EXPECT_EQ(std::ssize(serial.placed), got.inserted);
+    expect_same_spheres(store, ownership, comm.rank(), serial, region.first_id);
+  }
+}
+
 // The complaint of insert(), checked to be the same on all ranks.
 std::string complaint(const scene::Scene& scene, const rsa::LayerRegion& region, Decomposition kind) {
   const comm::Comm comm(MPI_COMM_WORLD);

@@ -32,6 +32,7 @@ struct Kind {
   int window;
   bool soft_and_settled;                 // layers end when at rest, softer than the final stage, which hardens them
   bool memory = false, rolling = false;  // of contacts
+  bool clipped = false;                  // the third layer ends at H_d
 };
 
 constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, false},
@@ -40,6 +41,8 @@ constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, fals
                            Kind{"discs_without_spin", 2, false, false, false, false, 0, false},
                            Kind{"window", 3, false, true, false, true, 1, false},
                            Kind{"settled", 3, false, false, false, true, 2, true},
+                           Kind{"clipped", 3, true, false, false, true, 0, false, false, false, true},
+                           Kind{"clipped_discs", 2, false, true, false, true, 0, false, false, false, true},
                            Kind{"memory", 3, false, false, false, true, 0, false, true},
                            Kind{"memory_without_spin", 2, true, false, false, false, 0, false, true},
                            Kind{"rolling_discs", 2, false, true, false, true, 1, false, true, true},
@@ -53,6 +56,10 @@ input::Input scene_of(const Kind& kind) {
                                 : test::small_input(kind.dimension, 0.6, r);
   if (kind.dimension == 3) in.container.size = {0.4, 0.2, 0.4};
   if (kind.dimension == 2) in.container.size = {0.6, 0.5};
+  if (kind.clipped) {
+    in.container.size.back() = 0.22;
+    in.layers.region = input::RegionRule::container;
+  }
   if (kind.periodic) in = test::periodic(in);
   if (kind.near_field) in.near_field = input::NearField{1e-4, 2.0, 1e-6, 3.5, 0.06};
   in.name = "restart";

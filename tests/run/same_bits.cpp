@@ -186,6 +186,17 @@ TEST(SameBitsWithAWindow, OfOneLayerInThePlaneWithANearField) {
   expect_one_pack(window_scene(2, true, false, true, 1), {1, 6});
 }
 
+TEST(SameBitsBelowTheHeight, OfLayersThatEndThere) {
+  for (const int dimension : {2, 3}) {
+    for (const bool graded : {false, true}) {
+      input::Input in = scene_of(dimension, graded, graded, false);
+      in.layers.region = input::RegionRule::container;
+      in.layers.maximum = 0;
+      expect_one_pack(in, {1, 2, 3, 5});
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,
                          ::testing::Combine(::testing::Values(2, 3), ::testing::Bool(), ::testing::Bool(),
                                             ::testing::Bool()));
