@@ -99,7 +99,8 @@ void explained(const std::string& path, Action&& action) {
   }
 }
 
-struct Digests {
+/// Digests that the file says of its rows.
+struct SaidDigests {
   std::uint64_t particles = 0, contacts = 0;
 };
 
@@ -132,7 +133,7 @@ RunState read_checkpoint(const comm::Comm& comm, const std::string& path, partic
                          Histories* histories) {
   const disk::h5::Quiet quiet;
   RunState state;
-  Digests expected;
+  SaidDigests expected;
   Histories found;
   comm::agree_on(comm, [&] {
     explained(path, [&] {

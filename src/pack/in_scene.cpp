@@ -29,13 +29,13 @@ std::string words_of_radius(GlobalId id, double radius, const std::string& fault
   return fmt::format("particle {} has the radius {} m, {}", id, radius, fault);
 }
 
-[[noreturn]] void refuse_checkpoint(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
+[[noreturn]] void refuse_in_scene(const std::string& words) { throw Error(ExitCode::bad_checkpoint, words); }
 
 void check_radii(const particles::Store& store, const scene::Sizes& sizes) {
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const std::string fault = fault_of_radius(store.radius(i), sizes);
     if (fault.empty()) continue;
-    refuse_checkpoint(words_of_radius(store.ids()[static_cast<std::size_t>(i)], store.radius(i), fault));
+    refuse_in_scene(words_of_radius(store.ids()[static_cast<std::size_t>(i)], store.radius(i), fault));
   }
 }
 
@@ -63,8 +63,8 @@ void check_springs(const Histories& histories, const scene::Scene& scene) {
         ++which;
         continue;
       }
-      refuse_checkpoint(fmt::format("the {} of particle {} and {} is {} m, and friction holds at most {} m", what.name,
-                                    row.holder, row.other, std::sqrt(square), longest[which]));
+      refuse_in_scene(fmt::format("the {} of particle {} and {} is {} m, and friction holds at most {} m", what.name,
+                                  row.holder, row.other, std::sqrt(square), longest[which]));
     }
   }
 }
@@ -75,7 +75,7 @@ void check_in_scene(const particles::Store& store, const Histories& histories, c
   check_radii(store, scene.sizes);
   const scene::Features &of = histories.features, &wanted = scene.features;
   if (of.memory != wanted.memory || (of.memory && of.rolling != wanted.rolling)) {
-    refuse_checkpoint(
+    refuse_in_scene(
         "what its contacts remember is not what those of the scene do: go on with the packmpi that wrote "
         "it, or begin anew");
   }
