@@ -16,6 +16,7 @@ import sys
 import time
 from pathlib import Path
 
+import readings_report
 import reproduction_report as report
 from common import ENVIRONMENT, ROOT, fail
 
@@ -206,7 +207,7 @@ def main():
     if not rows:
         fail(f"there are no runs in {options.results}")
     write_csv(options.doc / "data" / "reproduction.csv", rows)
-    passed = report.write(options.doc, ROOT / "doc" / "data", rows)
+    passed = report.write(options.doc, ROOT / "doc" / "data", rows, readings_report.chapter(ROOT / "doc" / "data"))
     print(f"{options.doc / 'reproduction.md'} written; all criteria met: {'yes' if passed else 'NO'}")
     return 0 if passed else 3
 

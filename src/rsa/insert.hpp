@@ -48,9 +48,9 @@ inline constexpr int size_classes = 8;
 /// this rank's columns to `store`. Throws Error(bad_input) on all ranks, naming target, placed and trials, if a
 /// particle is unplaced after layers.attempts trials; or earlier, once so few trials find room that the attempts left
 /// cannot suffice; a clipped layer begins anew with nine tenths of its particles instead, the first ones, so that the
-/// sizes are still those drawn. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what it throws
-/// leaves with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory, messages only to
-/// the ranks where trials fall.
+/// sizes are still those drawn. Calls `between_volleys`, if given, on all ranks before each of a layer's volleys; what
+/// it throws leaves with a part of the layer in `store`. Cost: O(trials / ranks) work, O(target / ranks) memory,
+/// messages only to the ranks where trials fall.
 [[nodiscard]] Insertion insert(const comm::Comm& comm, const scene::Scene& scene, const scene::Ownership& ownership,
                                const LayerRegion& region, particles::Store& store,
                                const std::function<void()>& between_volleys = {});
