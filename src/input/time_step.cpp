@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "base/elementary.hpp"
 
@@ -22,6 +24,27 @@ double chatter(const Contact& contact) {
   const double friction = std::max(contact.friction, contact.wall_friction);
   const bool stops = contact.tangential == Tangential::sliding && contact.regularisation == Regularisation::stop;
   return stops && friction > smooth ? std::sqrt(std::sqrt(friction / smooth)) : 1.0;
+}
+
+// The step [s] at which contacts under the weight of the bed would begin to chatter. Friction with memory holds a
+// particle by springs on all sides: one of eight loaded contacts that spins against its neighbours has omega^2 = 2 x 8
+// x 2/3 k_t / (2/5 m); without spin it swings with 16 (k_n + 2 k_t) / 3 m. The scheme is stable for omega dt < 2
+// (sqrt(zeta^2 + 1) - zeta). k_t is that of twice the mean overlap on the floor.
+double holding_step(const Input& in, double radius, double youngs_modulus) {
+  constexpr double contacts = 5.0, loaded = 1.8;  // twice the mean, of forces as uneven as in packs (0.9)
+  const Particles& of = in.particles;
+  const double modulus = pair_modulus(of, youngs_modulus), nu = of.poisson_ratio;
+  const double stress = of.density * in.jamming.gravity * in.container.size.back();
+  if (!(stress > 0.0)) return std::numeric_limits<double>::infinity();
+  const double squeezed = 3.0 * std::numbers::sqrt2 * std::numbers::pi * stress / (modulus * contacts);
+  const double overlap = loaded * elementary::power(squeezed, 2.0 / 3.0) * radius;
+  const double tangential = 8.0 * youngs_modulus / (4.0 * (1.0 + nu) * (2.0 - nu)) * std::sqrt(0.5 * radius * overlap);
+  const double normal = tangential * (2.0 - nu) / (2.0 * (1.0 - nu));
+  const double m = mass(of, radius);
+  const bool spins = in.dynamics.rotation;
+  const double omega = std::sqrt((spins ? 80.0 / 3.0 * tangential : 16.0 / 3.0 * (normal + 2.0 * tangential)) / m);
+  const double zeta = in.contact.damping_ratio * omega * std::sqrt((spins ? m / 7.0 : m / 2.0) / tangential);
+  return 2.0 * (std::sqrt(zeta * zeta + 1.0) - zeta) / omega;
 }
 
 }  // namespace
@@ -49,8 +72,10 @@ double safe_step(const Input& in, const RadiusRange& radii, double youngs_modulu
 }
 
 double automatic_step(const Input& in, const RadiusRange& radii, double youngs_modulus) {
-  const bool is_explicit = in.dynamics.theta == 0.0;
-  return safe_step(in, radii, youngs_modulus) / (is_explicit ? chatter(in.contact) : 1.0);
+  const double safe = safe_step(in, radii, youngs_modulus);
+  if (in.dynamics.theta != 0.0) return safe;
+  if (in.contact.tangential != Tangential::mindlin) return safe / chatter(in.contact);
+  return std::fmin(safe, holding_step(in, radii.smallest, youngs_modulus) / squeeze(radii));
 }
 
 }  // namespace packmpi::input

@@ -31,7 +31,8 @@ namespace packmpi::input {
 /// ones: the step beyond which `packmpi` warns [s].
 [[nodiscard]] double safe_step(const Input& in, const RadiusRange& radii, double youngs_modulus);
 
-/// The step of time_step = "auto": safe_step(), less for rough particles [s].
+/// The step of time_step = "auto" [s]: safe_step(), less for rough particles without memory; with it, no more than what
+/// contacts under the weight of the bed bear (doc/theory.md, "Time step").
 [[nodiscard]] double automatic_step(const Input& in, const RadiusRange& radii, double youngs_modulus);
 
 }  // namespace packmpi::input

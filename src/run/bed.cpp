@@ -33,6 +33,15 @@ void Bed::release() {
   progress.energy_given += observe::energy_of(comm, store, scene, 0, before);
 }
 
+void Bed::stop() {
+  const particles::Layout& layout = store.layout();
+  for (LocalIndex i = 0; i < store.total(); ++i) {
+    double* record = store.record(i);
+    std::fill_n(record + layout.velocity, layout.dimension, 0.0);
+    if (layout.rotation) std::fill_n(record + layout.spin, layout.spin_components(), 0.0);
+  }
+}
+
 void Bed::advance(std::int64_t steps) {
   const Stopwatch watch;
   stepper.advance(store, neighborhood, steps, moment());

@@ -46,6 +46,8 @@ struct Bed {
   void freeze_older();
   /// Brings everything frozen back into the store, at rest. Then rebuild. Every rank alike.
   void release();
+  /// Takes velocity and spin from every particle, ghosts too; contacts keep what they remember. Local.
+  void stop();
   [[nodiscard]] double top() const;      ///< [m] highest top, frozen or not. Collective
   [[nodiscard]] double surface() const;  ///< [m] mean over columns of the highest top, frozen or not. Collective
   [[nodiscard]] double height() const;   ///< [m] of the bed by the scene's rule. Collective

@@ -419,24 +419,45 @@ TEST(Fidelity, PresetsButPaperHaveFrictionWithMemory) {
 TEST(Fidelity, WithMemoryLayersGetTheTimeToSettle) {
   const double fall = std::sqrt(2.0 * 0.1 / 2.0);
   const Input reference = with({"fidelity=reference"}), balanced = with({"fidelity=balanced"});
+  const Input draft = with({"fidelity=draft"});
   EXPECT_NEAR(reference.layers.duration, 5.0 * fall, 0.005 * fall);
   EXPECT_EQ(reference.dynamics.window, 0) << "all move";
   EXPECT_FALSE(reference.layers.youngs_modulus.has_value()) << "hard";
   EXPECT_NEAR(balanced.layers.duration, 1.5 * fall, 0.005 * fall);
-  EXPECT_NEAR(*balanced.dynamics.relaxation, (2.0 + 0.1 * 5.0) * fall, 0.005 * fall);
+  EXPECT_NEAR(*balanced.dynamics.relaxation, 2.0 * fall, 0.005 * fall);
   EXPECT_EQ(balanced.dynamics.window, 8) << "8.3 diameters of 0.04 m, 0.0417 m a layer";
-  EXPECT_EQ(balanced.layers.youngs_modulus, 1e7);
+  EXPECT_FALSE(balanced.layers.youngs_modulus.has_value()) << "hard";
+  EXPECT_NEAR(draft.layers.duration, 0.9 * fall, 0.005 * fall);
+  EXPECT_EQ(draft.dynamics.window, 6);
+  EXPECT_EQ(draft.layers.youngs_modulus, 1e7);
 }
 
 TEST(Fidelity, LayersAreStifferWhereLargeParticlesPressSmallOnes) {
   const auto modulus = [](const char* small) {
-    return with({"fidelity=balanced", std::string("particles.radius={ distribution = \"bidisperse\", small = ") +
-                                          small + ", large = 0.02, large_share = 0.5, weighting = \"mass\" }"})
+    return with({"fidelity=draft", std::string("particles.radius={ distribution = \"bidisperse\", small = ") + small +
+                                       ", large = 0.02, large_share = 0.5, weighting = \"mass\" }"})
         .layers.youngs_modulus.value_or(1e8);
   };
   EXPECT_EQ(modulus("0.005"), 1e7) << "four to one";
   EXPECT_EQ(modulus("0.002"), 1e8) << "ten to one";
   EXPECT_NEAR(modulus("0.0032"), 1e7 * std::pow(1.25, 4), 1e5) << "6.25 to one";
+}
+
+double step_of(std::vector<std::string> set) {
+  const Input in = with(std::move(set));
+  return automatic_step(in, radius_range(in.particles.radius), in.particles.youngs_modulus);
+}
+
+TEST(TimeStep, WithMemoryItHeedsTheWeightOfTheBed) {
+  const std::string memory = "contact.tangential=mindlin", high = "container.size=[1.0, 1.0, 8.0]";
+  const std::string low = "container.size=[1.0, 1.0, 0.2]";
+  EXPECT_EQ(step_of({memory, low}), step_of({sliding, low})) << "the impact is harder than the weight";
+  const double deep = step_of({memory, high}), deeper = step_of({memory, "container.size=[1.0, 1.0, 16.0]"});
+  EXPECT_LT(deep, step_of({sliding, high}));
+  EXPECT_NEAR(deeper / deep, std::pow(0.5, 1.0 / 6.0), 1e-9)
+      << "stiffness goes with the sixth root of the stress, squared";
+  EXPECT_LT(step_of({memory, high, "contact.damping_ratio=0.4"}), 0.8 * deep);
+  EXPECT_GT(step_of({memory, high, "dynamics.rotation=false"}), deep);
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {

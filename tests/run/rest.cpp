@@ -369,6 +369,27 @@ TEST(Rest, AndNoLongerThanItsBound) {
   EXPECT_THAT(record.missed, Contains(HasSubstr("rest.kinetic_energy")));
 }
 
+// A column of 30 diameters, released all at once. With a wait of 40 s, ten windows of which are free, it swings until
+// its contacts have damped it; with one of 6 s it is stopped after 1.2 s.
+TEST(Rest, AHighBedThatSwingsIsStopped) {
+  input::Input in = brick();
+  in.container.size = {0.35, 0.35, 3.0};
+  in.container.boundary = {input::Boundary::periodic, input::Boundary::periodic};
+  in.contact.tangential = input::Tangential::mindlin;
+  in.dynamics.time_step = 2e-4;
+  in.dynamics.window = 3;
+  in.dynamics.relaxation = 0.1;
+  in.rest.kinetic_energy = 1e-6;
+  in.rest.wait = 40.0;
+  const report::RunRecord swings = pack(in);
+  in.rest.wait = 6.0;
+  const report::RunRecord stopped = pack(in);
+  EXPECT_THAT(stopped.missed, IsEmpty());
+  EXPECT_GT(stopped.relaxation_steps, 6000) << "it is left alone for two falls";
+  EXPECT_LT(2 * stopped.relaxation_steps, swings.relaxation_steps);
+  EXPECT_NEAR(stopped.phi_bulk, swings.phi_bulk, 0.002) << "the same bed";
+}
+
 TEST(Rest, ABedAtRestHasNoFinalStage) {
   input::Input in = brick();
   in.layers.duration = 4.0;
