@@ -163,7 +163,7 @@ Protocol with_memory(const Input& in) {
   constexpr Softness hard{1.0, 0.0};
   if (in.fidelity == "reference") return with_memory(in, {5.0, 0.0, 2.5, hard});
   if (is_draft(in)) return with_memory(in, {0.9, 6.0, 0.2, {0.1, 1.3e3}});
-  return with_memory(in, {1.5, 8.3, 2.0, hard});
+  return with_memory(in, {2.0, 12.0, 2.0, hard});
 }
 
 /// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the

@@ -17,6 +17,12 @@ double squeeze(const RadiusRange& radii) {
   return q > alike_ratio ? elementary::power(q, 0.3) : 1.0;
 }
 
+// What it bears for good: a force q^2 times that of a small one, so that it overlaps q^(4/3) as deep with twice the r*.
+double press(const RadiusRange& radii) {
+  const double q = radii.largest / radii.smallest;
+  return q > alike_ratio ? elementary::power(2.0, 0.25) * elementary::power(q, 1.0 / 3.0) : 1.0;
+}
+
 // "stop" lets a slip end within one step: the larger the step, the more a bed creeps, and rough grains become denser
 // by it than smooth ones (doc/theory.md, "Time step").
 double chatter(const Contact& contact) {
@@ -75,7 +81,7 @@ double automatic_step(const Input& in, const RadiusRange& radii, double youngs_m
   const double safe = safe_step(in, radii, youngs_modulus);
   if (in.dynamics.theta != 0.0) return safe;
   if (in.contact.tangential != Tangential::mindlin) return safe / chatter(in.contact);
-  return std::fmin(safe, holding_step(in, radii.smallest, youngs_modulus) / squeeze(radii));
+  return std::fmin(safe, holding_step(in, radii.smallest, youngs_modulus) / press(radii));
 }
 
 }  // namespace packmpi::input

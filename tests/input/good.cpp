@@ -423,9 +423,9 @@ TEST(Fidelity, WithMemoryLayersGetTheTimeToSettle) {
   EXPECT_NEAR(reference.layers.duration, 5.0 * fall, 0.005 * fall);
   EXPECT_EQ(reference.dynamics.window, 0) << "all move";
   EXPECT_FALSE(reference.layers.youngs_modulus.has_value()) << "hard";
-  EXPECT_NEAR(balanced.layers.duration, 1.5 * fall, 0.005 * fall);
+  EXPECT_NEAR(balanced.layers.duration, 2.0 * fall, 0.005 * fall);
   EXPECT_NEAR(*balanced.dynamics.relaxation, 2.0 * fall, 0.005 * fall);
-  EXPECT_EQ(balanced.dynamics.window, 8) << "8.3 diameters of 0.04 m, 0.0417 m a layer";
+  EXPECT_EQ(balanced.dynamics.window, 12) << "12 diameters of 0.04 m, 0.0417 m a layer";
   EXPECT_FALSE(balanced.layers.youngs_modulus.has_value()) << "hard";
   EXPECT_NEAR(draft.layers.duration, 0.9 * fall, 0.005 * fall);
   EXPECT_EQ(draft.dynamics.window, 6);
@@ -458,6 +458,12 @@ TEST(TimeStep, WithMemoryItHeedsTheWeightOfTheBed) {
       << "stiffness goes with the sixth root of the stress, squared";
   EXPECT_LT(step_of({memory, high, "contact.damping_ratio=0.4"}), 0.8 * deep);
   EXPECT_GT(step_of({memory, high, "dynamics.rotation=false"}), deep);
+  const std::string mixed =
+      "particles.radius={ distribution = \"bidisperse\", small = 0.002, large = 0.02, large_share = 0.5, weighting = "
+      "\"mass\" }";
+  const std::string small = "particles.radius={ distribution = \"equal\", value = 0.002 }";
+  EXPECT_NEAR(step_of({memory, high, small}) / step_of({memory, high, mixed}), std::pow(2.0, 0.25) * std::cbrt(10.0),
+              1e-9);
 }
 
 TEST(GoodInput, WallFrictionFollowsFriction) {
