@@ -28,6 +28,16 @@ struct StoredVectors {
   std::int64_t entries = 0;
 };
 
+/// The walls of a container by their numbers; of those that it has not, too.
+using Planes = std::array<geometry::Plane, geometry::most_surfaces>;
+[[nodiscard]] constexpr Planes planes_of(const geometry::Container& container) {
+  Planes planes{};
+  for (std::size_t number = 0; number < planes.size(); ++number) {
+    planes[number] = container.plane(static_cast<geometry::Surface>(number));
+  }
+  return planes;
+}
+
 /// Everything a kernel reads and writes. Pointers are not owned. A step may be done in several calls, one for each part
 /// of the slots in ascending order: the lists are then those of the part, and the ring is left alone between the calls.
 struct StepData {
@@ -53,6 +63,7 @@ struct StepData {
   Vec3 fluid_velocity;   ///< [m/s]
   Vec3 size;             ///< [m] container; the period on periodic axes
   std::array<bool, 2> periodic;
+  Planes planes;
   StoredVectors stored_pairs = {};  ///< of the entries from `first` on
   StoredVectors stored_walls = {};  ///< of the entries from `wall_particle` on
 };

@@ -4,28 +4,13 @@
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
-/// Where a wall is: n (towards the wall) is sign on one axis; distance of a centre = offset - sign * x[axis].
-struct Plane {
-  int axis;
-  double sign, offset;
-};
-
-template <Features F>
-PACKMPI_INLINE Plane plane_of(const StepData& data, neighbor::Wall wall) {
-  const int number = static_cast<int>(wall);
-  if (number == 0) return {F.dimension - 1, -1.0, 0.0};
-  const int axis = (number - 1) / 2;
-  const bool high = number % 2 == 0;
-  return {axis, high ? 1.0 : -1.0, high ? data.size[static_cast<unsigned>(axis)] : 0.0};
-}
-
 /// Fill entry p of the block for one particle at one wall: the wall is a second end at rest, all its fields zero.
 template <Features F>
 PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalIndex particle, neighbor::Wall wall) {
   using M = Memory<F>;
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
-  const Plane plane = plane_of<F>(data, wall);
+  const geometry::Plane& plane = data.planes[static_cast<unsigned>(wall)];
   for (int a = 0; a < layout.stride; ++a) {
     b.in[a][p] = M::sign(a, false) != 0 ? -record[a] : record[a];
     if (M::reads(a) > 1) b.again[a][p] = M::sign(a, true) != 0 ? -record[a] : record[a];

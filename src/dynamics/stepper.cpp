@@ -165,6 +165,7 @@ StepData Stepper::data(particles::Store& store, neighbor::Neighborhood& neighbor
       .fluid_velocity = scene_->in.drag.fluid_velocity,
       .size = scene_->container.size,
       .periodic = scene_->container.periodic,
+      .planes = planes_of(scene_->container),
       .stored_pairs = {neighborhood.memory().of_pairs(), std::ssize(pairs.first)},
       .stored_walls = {neighborhood.memory().of_walls(), std::ssize(walls.particle)},
   };

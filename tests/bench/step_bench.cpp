@@ -146,7 +146,8 @@ struct Bed {
             .drag = 0.005,
             .fluid_velocity = {},
             .size = size,
-            .periodic = {features.periodic, features.periodic}};
+            .periodic = {features.periodic, features.periodic},
+            .planes = dynamics::planes_of({features.dimension, size, {}})};
     if (!features.memory) return;
     const auto doubles = static_cast<std::size_t>(scene::stored_doubles(features));
     pair_stored.assign(doubles * pairs.first.size(), 0.0);

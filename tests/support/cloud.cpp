@@ -221,6 +221,7 @@ dynamics::StepData Cloud::data() {
           .fluid_velocity = {0.1, -0.2, features.dimension == 3 ? 0.3 : 0.0},
           .size = size,
           .periodic = periodic,
+          .planes = dynamics::planes_of({features.dimension, size, periodic}),
           .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
           .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }

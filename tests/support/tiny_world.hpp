@@ -146,6 +146,7 @@ class World {
             .fluid_velocity = scene_.in.drag.fluid_velocity,
             .size = scene_.container.size,
             .periodic = scene_.container.periodic,
+            .planes = dynamics::planes_of(scene_.container),
             .stored_pairs = {pair_stored_.data(), std::ssize(pairs_.first)},
             .stored_walls = {wall_stored_.data(), std::ssize(walls_.particle)}};
   }
