@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "neighbor/wire.hpp"
+
 namespace packmpi::neighbor {
 namespace {
 
@@ -83,7 +85,6 @@ void Frozen::sort(const scene::Ownership& ownership, const LocalColumns& columns
 std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, const LocalColumns& columns,
                                          double range) const {
   std::vector<comm::Parcel> parcels;
-  const std::size_t record = store_.layout().record_bytes();
   for (const LocalColumns::Border& border : columns.borders()) {  // ascending in rank
     if (parcels.empty() || parcels.back().rank != border.rank) parcels.push_back({border.rank, {}});
     std::vector<std::byte>& bytes = parcels.back().bytes;
@@ -93,10 +94,7 @@ std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, cons
       const bool wanted = std::ranges::any_of(
           border.columns, [&](geometry::ColumnIndex column) { return ownership.grid().distance(x, column) < range; });
       if (!wanted) continue;
-      const auto* id = reinterpret_cast<const std::byte*>(&store_.ids()[static_cast<std::size_t>(i)]);
-      const auto* body = reinterpret_cast<const std::byte*>(store_.record(i));
-      bytes.insert(bytes.end(), id, id + sizeof(GlobalId));
-      bytes.insert(bytes.end(), body, body + record);
+      put_particle(store_, i, bytes);
     }
   }
   return parcels;
@@ -105,13 +103,9 @@ std::vector<comm::Parcel> Frozen::copies(const scene::Ownership& ownership, cons
 void Frozen::add_copies(const std::vector<comm::Parcel>& parcels, const scene::Ownership& ownership,
                         const LocalColumns& columns) {
   particles::Store arrived(store_.layout());
-  std::vector<double> body(static_cast<std::size_t>(store_.layout().stride));
   for (const comm::Parcel& parcel : parcels) {
-    for (std::size_t at = 0; at < parcel.bytes.size(); at += sizeof(GlobalId) + store_.layout().record_bytes()) {
-      GlobalId id = 0;
-      std::memcpy(&id, parcel.bytes.data() + at, sizeof id);
-      std::memcpy(body.data(), parcel.bytes.data() + at + sizeof id, store_.layout().record_bytes());
-      arrived.add_record(id, body.data());
+    for (std::size_t at = 0; at < parcel.bytes.size(); at += wire_bytes(store_.layout())) {
+      add_particle(parcel.bytes.data() + at, arrived);
     }
   }
   std::vector<Place> places;

@@ -11,6 +11,7 @@
 #include "base/grow.hpp"
 #include "comm/datatype.hpp"
 #include "comm/petsc.hpp"
+#include "neighbor/wire.hpp"
 
 namespace packmpi::neighbor {
 namespace {
@@ -24,27 +25,11 @@ struct Heading {
 };
 
 std::vector<std::byte> pack(const particles::Store& store, std::span<const LocalIndex> slots, const Heading& heading) {
-  const std::size_t record = store.layout().record_bytes();
-  std::vector<std::byte> bytes(sizeof heading + slots.size() * (sizeof(GlobalId) + record));
-  std::byte* out = bytes.data();
-  std::memcpy(out, &heading, sizeof heading);
-  out += sizeof heading;
-  for (const LocalIndex slot : slots) {
-    std::memcpy(out, &store.ids()[static_cast<std::size_t>(slot)], sizeof(GlobalId));
-    out += sizeof(GlobalId);
-    std::memcpy(out, store.record(slot), record);
-    out += record;
-  }
+  std::vector<std::byte> bytes(sizeof heading);
+  bytes.reserve(sizeof heading + slots.size() * wire_bytes(store.layout()));
+  std::memcpy(bytes.data(), &heading, sizeof heading);
+  for (const LocalIndex slot : slots) put_particle(store, slot, bytes);
   return bytes;
-}
-
-// Ids and records of a parcel's particles, into the ghosts from `slot` on.
-void unpack(std::span<const std::byte> bytes, particles::Store& store, LocalIndex slot) {
-  const std::size_t record = store.layout().record_bytes();
-  for (const std::byte* in = bytes.data(); in < bytes.data() + bytes.size(); in += sizeof(GlobalId) + record, ++slot) {
-    std::memcpy(&store.ids()[static_cast<std::size_t>(slot)], in, sizeof(GlobalId));
-    std::memcpy(store.record(slot), in + sizeof(GlobalId), record);
-  }
 }
 
 // The live doubles of a record: position, velocity, spin are each contiguous in it.
@@ -140,15 +125,17 @@ void Halo::plan(particles::Store& store, const std::vector<Sends>& sends) {
     Heading heading{};
     std::memcpy(&heading, parcel.bytes.data(), sizeof heading);
     const std::span particles = std::span(parcel.bytes).subspan(sizeof heading);
-    const auto count = static_cast<std::int64_t>(particles.size() / (sizeof(GlobalId) + layout_.record_bytes()));
+    const std::size_t each = wire_bytes(layout_);
+    const auto count = static_cast<std::int64_t>(particles.size() / each);
     const LocalIndex slot = store.total();
     store.set_ghosts(store.ghosts() + static_cast<LocalIndex>(count));
-    unpack(particles, store, slot);
     for (std::int64_t k = 0; k < count; ++k) {
       const std::size_t half = k < heading.early ? 0 : 1;
       const std::int64_t root = heading.first_root[half] + (half == 0 ? k : k - heading.early);
       origin[half].push_back({parcel.rank, static_cast<PetscInt>(root)});
-      parts_[half].arrival_slot.push_back(slot + static_cast<LocalIndex>(k));
+      const LocalIndex ghost = slot + static_cast<LocalIndex>(k);
+      take_particle(particles.data() + static_cast<std::size_t>(k) * each, store, ghost);
+      parts_[half].arrival_slot.push_back(ghost);
     }
   }
 

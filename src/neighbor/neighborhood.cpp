@@ -9,6 +9,7 @@
 #include "base/grow.hpp"
 #include "base/memory.hpp"
 #include "base/timer.hpp"
+#include "neighbor/wire.hpp"
 #include "scene/limits.hpp"
 #include "scene/pair_channels.hpp"
 
@@ -172,7 +173,6 @@ std::vector<Rank> Neighborhood::destinations(const particles::Store& store) cons
 void Neighborhood::migrate(particles::Store& store, std::span<const Rank> destination, Baggage* baggage,
                            comm::Purpose purpose) const {
   if (comm_->size() == 1) return;
-  const std::size_t record = store.layout().record_bytes();
   std::vector<comm::Parcel> outgoing;
   std::vector<LocalIndex> staying;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
@@ -181,25 +181,17 @@ void Neighborhood::migrate(particles::Store& store, std::span<const Rank> destin
       staying.push_back(i);
       continue;
     }
-    auto parcel = std::ranges::find(outgoing, owner, &comm::Parcel::rank);
-    if (parcel == outgoing.end()) parcel = outgoing.insert(outgoing.end(), comm::Parcel{owner, {}});
-    const auto* id = reinterpret_cast<const std::byte*>(&store.ids()[static_cast<std::size_t>(i)]);
-    const auto* body = reinterpret_cast<const std::byte*>(store.record(i));
-    parcel->bytes.insert(parcel->bytes.end(), id, id + sizeof(GlobalId));
-    parcel->bytes.insert(parcel->bytes.end(), body, body + record);
-    if (baggage != nullptr) baggage->write(i, parcel->bytes);
+    std::vector<std::byte>& bytes = bytes_for(owner, outgoing);
+    put_particle(store, i, bytes);
+    if (baggage != nullptr) baggage->write(i, bytes);
   }
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), purpose);
   if (baggage != nullptr) baggage->keep(staying);
   if (staying.size() < static_cast<std::size_t>(store.owned())) store.keep(staying);
-  std::vector<double> body(static_cast<std::size_t>(store.layout().stride));
   for (const comm::Parcel& parcel : incoming) {
     for (std::size_t at = 0; at < parcel.bytes.size();) {
-      GlobalId id = 0;
-      std::memcpy(&id, parcel.bytes.data() + at, sizeof id);
-      std::memcpy(body.data(), parcel.bytes.data() + at + sizeof id, record);
-      store.add_record(id, body.data());
-      at += sizeof id + record;
+      add_particle(parcel.bytes.data() + at, store);
+      at += wire_bytes(store.layout());
       if (baggage != nullptr) at += baggage->read(std::span(parcel.bytes).subspan(at));
     }
   }
@@ -217,11 +209,10 @@ void Neighborhood::complete_borders(const particles::Store& store) {
   memory_.each_border(store, pairs_, store.owned() + halo_.ghosts(),
                       [&](LocalIndex ghost, GlobalId theirs, GlobalId mine, std::span<const double> values) {
                         const Rank owner = ownership_->owner(ownership_->grid().column(store.position(ghost)));
-                        auto parcel = std::ranges::find(outgoing, owner, &comm::Parcel::rank);
-                        if (parcel == outgoing.end()) parcel = outgoing.insert(outgoing.end(), comm::Parcel{owner, {}});
-                        put(parcel->bytes, &theirs, sizeof theirs);
-                        put(parcel->bytes, &mine, sizeof mine);
-                        put(parcel->bytes, values.data(), values.size_bytes());
+                        std::vector<std::byte>& bytes = bytes_for(owner, outgoing);
+                        put(bytes, &theirs, sizeof theirs);
+                        put(bytes, &mine, sizeof mine);
+                        put(bytes, values.data(), values.size_bytes());
                       });
   const std::vector<comm::Parcel> incoming = comm::exchange(*comm_, std::move(outgoing), comm::Purpose::migration);
   std::vector<std::pair<GlobalId, LocalIndex>> slots;
