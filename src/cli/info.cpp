@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/digest.hpp"
 #include "base/text.hpp"
 #include "base/voids.hpp"
 #include "pack/checkpoint.hpp"
@@ -32,13 +33,12 @@ class Bits {
  public:
   template <class T>
   void add(const std::vector<T>& values) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-    for (std::size_t k = 0; k < values.size() * sizeof(T); ++k) hash_ = (hash_ ^ bytes[k]) * 0x100000001b3ULL;
+    hash_ = fnv_add(hash_, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
   }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+  std::uint64_t hash_ = fnv_start;
 };
 
 std::string describe(const std::string& path, const pack::PackRows& pack, double phi_bulk) {

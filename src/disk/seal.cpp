@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
-#include "base/fnv.hpp"
 #include "base/regular_file.hpp"
 #include "disk/scatter.hpp"
 
@@ -24,14 +24,6 @@ constexpr std::int64_t number_bytes = 8, column_bytes = 4 * number_bytes;
 constexpr std::int64_t tail_bytes = 4 * number_bytes + static_cast<std::int64_t>(mark.size());
 constexpr std::int64_t most_columns = 64;
 constexpr std::int64_t batch_bytes = std::int64_t{1} << 20;
-
-/// The finaliser of splitmix64, as in particles::digest().
-constexpr std::uint64_t stir(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31U);
-}
 
 [[noreturn]] void refuse_seal(const std::string& words) { throw Error(ExitCode::io_failure, words); }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "base/memory.hpp"
 #include "disk/scatter.hpp"
 #include "disk/whole_file.hpp"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "disk/scatter.hpp"
 #include "disk/sealed_file.hpp"
 #include "pack/checkpoint.hpp"

@@ -11,7 +11,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "disk/scatter.hpp"
 
 namespace packmpi::pack {

@@ -1,20 +1,10 @@
+#include "base/digest.hpp"
+
 #include <bit>
 
 #include "particles/store.hpp"
 
 namespace packmpi::particles {
-namespace {
-
-/// The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit of x stirs every bit of the result.
-constexpr std::uint64_t stir(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31U);
-}
-
-}  // namespace
-
 std::uint64_t digest(const Store& store) {
   const int fields = store.layout().used_doubles();
   std::uint64_t sum = 0;

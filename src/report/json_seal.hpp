@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 
 namespace packmpi::report {
 

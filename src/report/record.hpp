@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "base/types.hpp"
 #include "observe/measure.hpp"
 #include "observe/rest.hpp"

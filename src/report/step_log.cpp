@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "base/log.hpp"
 #include "base/regular_file.hpp"
 

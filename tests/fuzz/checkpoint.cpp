@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "base/fnv.hpp"
+#include "base/digest.hpp"
 #include "disk/seal.hpp"
 #include "fuzz/demand.hpp"
 #include "pack/pack.hpp"
