@@ -61,31 +61,25 @@ void add_body_forces(const particles::Store& store, const scene::Scene& scene, S
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
                const neighbor::Neighborhood& neighborhood, GlobalId frozen_below, Sums& sums,
                std::vector<double>& magnitudes) {
-  const neighbor::PairList& pairs = neighborhood.pairs();
   const dynamics::StoredView stored = dynamics::stored_pairs(neighborhood);
-  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
-    const LocalIndex i = pairs.first[p];
-    const LocalIndex j = pairs.second[p];
-    if (!(touch(store, scene.container, i, j).overlap > 0.0)) continue;
-    const Vec3 force = dynamics::pair_contact(scene, law, store, i, j, stored, static_cast<std::int64_t>(p)).force;
-    sums.add(i, force);
-    if (j < store.owned()) sums.add(j, force, -1);
-    if (is_counted_here(store, i, j, frozen_below)) magnitudes.push_back(length(force));
-  }
+  each_touching(store, scene.container, neighborhood.pairs(),
+                [&](std::int64_t entry, LocalIndex i, LocalIndex j, double) {
+                  const Vec3 force = dynamics::pair_contact(scene, law, store, i, j, stored, entry).force;
+                  sums.add(i, force);
+                  if (j < store.owned()) sums.add(j, force, -1);
+                  if (is_counted_here(store, i, j, frozen_below)) magnitudes.push_back(length(force));
+                });
 }
 
 void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
                const neighbor::Neighborhood& neighborhood, Sums& sums, std::vector<double>& magnitudes) {
-  const neighbor::WallList& walls = neighborhood.walls();
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    if (!(wall_penetration(store, scene.container, i, walls.wall[w]) > 0.0)) continue;
-    const auto entry = static_cast<std::int64_t>(w);
-    const Vec3 force = dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force;
-    sums.add(i, force);
-    magnitudes.push_back(length(force));
-  }
+  each_touching_wall(store, scene.container, neighborhood.walls(),
+                     [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double) {
+                       const Vec3 force = dynamics::wall_contact(scene, law, store, i, wall, stored, entry).force;
+                       sums.add(i, force);
+                       magnitudes.push_back(length(force));
+                     });
 }
 
 }  // namespace

@@ -4,6 +4,24 @@
 
 namespace packmpi::observe {
 
+void keep_highest(std::vector<ColumnValue>& values) {
+  join_columns(values, [](double a, double b) { return std::max(a, b); });
+}
+
+std::vector<ColumnValue> highest_tops(std::span<const particles::Store* const> stores, int vertical,
+                                      const ColumnNumbering& columns) {
+  std::vector<ColumnValue> tops;
+  for (const particles::Store* store : stores) {
+    for (LocalIndex i = 0; i < store->owned(); ++i) {
+      const Vec3 x = store->position(i);
+      const double height = x[static_cast<std::size_t>(vertical)] + store->radius(i);
+      if (height > 0.0) tops.push_back({columns.column(x), height});  // NaN has no place in a maximum
+    }
+  }
+  keep_highest(tops);
+  return tops;
+}
+
 ColumnField::ColumnField(const comm::Comm& comm, const ColumnNumbering& columns)
     : comm_(comm.handle()),
       used_(static_cast<PetscInt>(columns.counts[0])),

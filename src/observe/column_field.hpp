@@ -3,6 +3,7 @@
 #pragma once
 #include <petscdmda.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "comm/comm.hpp"
 #include "comm/petsc.hpp"
+#include "particles/store.hpp"
 
 namespace packmpi::observe {
 
@@ -36,6 +38,28 @@ struct ColumnValue {
   std::int64_t column;
   double value;
 };
+
+/// One value a column, ascending in column: `join` of all that have it, in their order.
+template <class Join>
+void join_columns(std::vector<ColumnValue>& values, Join&& join) {
+  std::stable_sort(values.begin(), values.end(),
+                   [](const ColumnValue& a, const ColumnValue& b) { return a.column < b.column; });
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (kept > 0 && values[kept - 1].column == values[k].column) {
+      values[kept - 1].value = join(values[kept - 1].value, values[k].value);
+    } else {
+      values[kept++] = values[k];
+    }
+  }
+  values.resize(kept);
+}
+/// As join_columns(): the highest value of each.
+void keep_highest(std::vector<ColumnValue>& values);
+
+/// The highest top [m] above 0 of the owned particles of some stores in each column that has one; by column. Local.
+[[nodiscard]] std::vector<ColumnValue> highest_tops(std::span<const particles::Store* const> stores, int vertical,
+                                                    const ColumnNumbering& columns);
 
 /// 0 in every column at first. PETSc objects are destroyed on every path; a PETSc error is an Error.
 /// Construction and destruction are collective. Memory: O(columns / ranks).

@@ -26,22 +26,6 @@ ColumnNumbering numbering(const scene::Scene& scene) {
   return columns;
 }
 
-/// One value a column, ascending: `join` of all that have it.
-template <class Join>
-void join_columns(std::vector<ColumnValue>& values, Join&& join) {
-  std::stable_sort(values.begin(), values.end(),
-                   [](const ColumnValue& a, const ColumnValue& b) { return a.column < b.column; });
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (kept > 0 && values[kept - 1].column == values[k].column) {
-      values[kept - 1].value = join(values[kept - 1].value, values[k].value);
-    } else {
-      values[kept++] = values[k];
-    }
-  }
-  values.resize(kept);
-}
-
 /// Collective. Sums by column: terms become whole numbers of a quantum, a power of two that leaves their sum below
 /// 2^52.
 std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns, std::vector<ColumnValue> terms) {
@@ -62,16 +46,9 @@ std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns,
 
 std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                          const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::vector<ColumnValue> values;
-  values.reserve(static_cast<std::size_t>(store.owned()));
-  for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const Vec3 x = store.position(i);
-    values.push_back({columns.column(x), x[vertical] + store.radius(i)});
-  }
-  join_columns(values, [](double a, double b) { return std::max(a, b); });
+  const particles::Store* one = &store;
   ColumnField field(comm, columns);
-  field.raise_to(values);
+  field.raise_to(highest_tops(std::span(&one, 1), scene.container.vertical(), columns));
   return field.local();
 }
 

@@ -20,11 +20,7 @@ struct PairSums {
 PairSums count_pairs(const particles::Store& store, const geometry::Container& box, const neighbor::PairList& pairs,
                      GlobalId frozen_below, std::vector<std::int32_t>& of_particle) {
   PairSums sums;
-  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
-    const LocalIndex i = pairs.first[p];
-    const LocalIndex j = pairs.second[p];
-    const double overlap = touch(store, box, i, j).overlap;
-    if (!(overlap > 0.0)) continue;
+  each_touching(store, box, pairs, [&](std::int64_t, LocalIndex i, LocalIndex j, double overlap) {
     ++of_particle[static_cast<std::size_t>(i)];
     const bool both_owned = j < store.owned();
     if (both_owned) ++of_particle[static_cast<std::size_t>(j)];
@@ -33,7 +29,7 @@ PairSums count_pairs(const particles::Store& store, const geometry::Container& b
       sums.overlaps.push_back(overlap / std::min(store.radius(i), store.radius(j)));
       sums.largest = std::max(sums.largest, sums.overlaps.back());
     }
-  }
+  });
   return sums;
 }
 
@@ -46,12 +42,9 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   const PairSums sums = count_pairs(store, scene.container, pairs, frozen_below, result.of_particle);
 
   double deepest = 0.0;
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    const double depth = wall_penetration(store, scene.container, i, walls.wall[w]);
-    if (!(depth > 0.0)) continue;
+  each_touching_wall(store, scene.container, walls, [&](std::int64_t, LocalIndex i, neighbor::Wall, double depth) {
     deepest = std::max(deepest, depth / store.radius(i));
-  }
+  });
   std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
                                      sums.ends};
   comm.sum(counts);

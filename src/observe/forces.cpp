@@ -57,14 +57,11 @@ double floor_force(const comm::Comm& comm, const particles::Store& store, const 
   const dynamics::Law law = dynamics::make_law(scene);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> forces;
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    if (walls.wall[w] != neighbor::Wall::floor) continue;
-    const LocalIndex i = walls.particle[w];
-    const double overlap = wall_penetration(store, scene.container, i, neighbor::Wall::floor);
-    if (!(overlap > 0.0)) continue;
-    const double up = dynamics::wall_contact(scene, law, store, i, neighbor::Wall::floor).force[vertical];
+  each_touching_wall(store, scene.container, walls, [&](std::int64_t, LocalIndex i, neighbor::Wall wall, double) {
+    if (wall != neighbor::Wall::floor) return;
+    const double up = dynamics::wall_contact(scene, law, store, i, wall).force[vertical];
     forces.push_back(up);  // friction on a plane has no part in it
-  }
+  });
   return comm::exact_sum(comm, forces);
 }
 

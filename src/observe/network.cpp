@@ -16,16 +16,12 @@ class Holding {
         held_(static_cast<std::size_t>(store.total()), 1),
         of_particle_(static_cast<std::size_t>(store.owned())),
         of_walls_(of_particle_.size(), 0) {
-    const neighbor::PairList& pairs = neighborhood.pairs();
-    for (std::size_t p = 0; p < pairs.first.size(); ++p) {
-      const auto i = static_cast<std::size_t>(pairs.first[p]), j = static_cast<std::size_t>(pairs.second[p]);
-      if (touch(store, box, pairs.first[p], pairs.second[p]).overlap > 0.0) touching_.push_back({i, j});
-    }
-    const neighbor::WallList& walls = neighborhood.walls();
-    for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-      const LocalIndex i = walls.particle[w];
-      if (wall_penetration(store, box, i, walls.wall[w]) > 0.0) ++of_walls_[static_cast<std::size_t>(i)];
-    }
+    each_touching(store, box, neighborhood.pairs(), [&](std::int64_t, LocalIndex i, LocalIndex j, double) {
+      touching_.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j)});
+    });
+    each_touching_wall(store, box, neighborhood.walls(), [&](std::int64_t, LocalIndex i, neighbor::Wall, double) {
+      ++of_walls_[static_cast<std::size_t>(i)];
+    });
     count();
   }
 

@@ -12,16 +12,13 @@ namespace {
 /// Upward force of floor and walls on the particles [N].
 double upward_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                     const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
-  const neighbor::WallList& walls = neighborhood.walls();
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> forces;
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    if (!(wall_penetration(store, scene.container, i, walls.wall[w]) > 0.0)) continue;
-    const auto entry = static_cast<std::int64_t>(w);
-    forces.push_back(dynamics::wall_contact(scene, law, store, i, walls.wall[w], stored, entry).force[vertical]);
-  }
+  const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double) {
+    forces.push_back(dynamics::wall_contact(scene, law, store, i, wall, stored, entry).force[vertical]);
+  };
+  each_touching_wall(store, scene.container, neighborhood.walls(), add);
   return comm::exact_sum(comm, forces);
 }
 

@@ -1,7 +1,6 @@
 /// The height of the surface: highest top of each lateral column, and their mean.
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstring>
 #include <vector>
 
@@ -22,68 +21,33 @@ ColumnNumbering make_columns(const scene::Scene& scene) {
   return columns;
 }
 
-/// The highest top of particles in a column.
-struct Top {
-  std::int64_t column;
-  double height;
-  friend auto operator<=>(const Top&, const Top&) = default;
-};
-
-/// The last and so the highest of each column; one a column then, ascending.
-void keep_highest(std::vector<Top>& tops) {
-  std::sort(tops.begin(), tops.end());
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < tops.size(); ++k) {
-    if (k + 1 == tops.size() || tops[k + 1].column != tops[k].column) tops[kept++] = tops[k];
-  }
-  tops.resize(kept);
-}
-
-/// Of the columns that this rank has particles in.
-std::vector<Top> highest_tops(std::span<const particles::Store* const> stores, const scene::Scene& scene,
-                              const ColumnNumbering& columns) {
-  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::vector<Top> tops;
-  for (const particles::Store* store : stores) {
-    for (LocalIndex i = 0; i < store->owned(); ++i) {
-      const Vec3 x = store->position(i);
-      const double height = x[vertical] + store->radius(i);
-      if (height > 0.0) tops.push_back({columns.column(x), height});  // NaN has no place in an order
-    }
-  }
-  keep_highest(tops);
-  return tops;
-}
-
 /// Collective. Columns are dealt out in runs; the tops of those of this rank's run that hold any particle of any rank.
-std::vector<double> heights_by_mail(const comm::Comm& comm, const std::vector<Top>& tops,
+std::vector<double> heights_by_mail(const comm::Comm& comm, const std::vector<ColumnValue>& tops,
                                     const ColumnNumbering& columns) {
   const std::int64_t run = columns.size() / comm.size() + 1;
   std::vector<comm::Parcel> parcels;
-  for (const Top& top : tops) {  // ascending in rank, too
+  for (const ColumnValue& top : tops) {  // ascending in rank, too
     const auto rank = static_cast<Rank>(top.column / run);
     if (parcels.empty() || parcels.back().rank != rank) parcels.push_back({rank, {}});
     const auto* bytes = reinterpret_cast<const std::byte*>(&top);
     parcels.back().bytes.insert(parcels.back().bytes.end(), bytes, bytes + sizeof top);
   }
-  std::vector<Top> all;
+  std::vector<ColumnValue> all;
   for (const comm::Parcel& parcel : comm::exchange(comm, std::move(parcels))) {
     const std::size_t before = all.size();
-    all.resize(before + parcel.bytes.size() / sizeof(Top));
+    all.resize(before + parcel.bytes.size() / sizeof(ColumnValue));
     std::memcpy(&all[before], parcel.bytes.data(), parcel.bytes.size());
   }
   keep_highest(all);
   std::vector<double> heights(all.size());
-  std::ranges::transform(all, heights.begin(), &Top::height);
+  std::ranges::transform(all, heights.begin(), &ColumnValue::value);
   return heights;
 }
 
-std::vector<double> heights_on_grid(const comm::Comm& comm, const std::vector<Top>& tops,
+std::vector<double> heights_on_grid(const comm::Comm& comm, const std::vector<ColumnValue>& tops,
                                     const ColumnNumbering& columns) {
-  std::vector<ColumnValue> values(tops.size());
-  std::ranges::transform(tops, values.begin(), [](const Top& top) { return ColumnValue{top.column, top.height}; });
   ColumnField heights(comm, columns);
-  heights.raise_to(values);
+  heights.raise_to(tops);
   return heights.local();
 }
 
@@ -98,7 +62,7 @@ double surface_height(const comm::Comm& comm, const particles::Store& store, con
 double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
                       const scene::Scene& scene, std::int64_t most_stored) {
   const ColumnNumbering columns = make_columns(scene);
-  const std::vector<Top> tops = highest_tops(stores, scene, columns);
+  const std::vector<ColumnValue> tops = highest_tops(stores, scene.container.vertical(), columns);
   const bool few = columns.size() <= most_stored;
   const double sum =
       comm::exact_sum(comm, few ? heights_on_grid(comm, tops, columns) : heights_by_mail(comm, tops, columns));

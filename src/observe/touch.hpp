@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "geometry/container.hpp"
 #include "neighbor/lists.hpp"
@@ -36,6 +37,26 @@ struct Touch {
 [[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Container& box,
                                              LocalIndex i, neighbor::Wall wall) {
   return store.radius(i) - box.plane(wall).distance(store.position(i));
+}
+
+/// Calls take(entry, i, j, overlap [m]) for each listed pair that touches, in the order of the list.
+template <class Take>
+void each_touching(const particles::Store& store, const geometry::Container& box, const neighbor::PairList& pairs,
+                   Take&& take) {
+  for (std::size_t p = 0; p < pairs.first.size(); ++p) {
+    const double overlap = touch(store, box, pairs.first[p], pairs.second[p]).overlap;
+    if (overlap > 0.0) take(static_cast<std::int64_t>(p), pairs.first[p], pairs.second[p], overlap);
+  }
+}
+
+/// Calls take(entry, i, wall, depth [m]) for each particle that touches a wall, in the order of the list.
+template <class Take>
+void each_touching_wall(const particles::Store& store, const geometry::Container& box, const neighbor::WallList& walls,
+                        Take&& take) {
+  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
+    const double depth = wall_penetration(store, box, walls.particle[w], walls.wall[w]);
+    if (depth > 0.0) take(static_cast<std::int64_t>(w), walls.particle[w], walls.wall[w], depth);
+  }
 }
 
 }  // namespace packmpi::observe
