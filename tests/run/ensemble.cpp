@@ -20,6 +20,7 @@
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "report/ensemble.hpp"
+#include "report/json_seal.hpp"
 #include "run/make_pack.hpp"
 
 namespace packmpi::run {
@@ -227,8 +228,15 @@ TEST_F(Ensembles, WhatIsTakenOverIsLookedAt) {
       "box_1_2.hdf", [](const fs::path& path) { fs::resize_file(path, fs::file_size(path) / 2); }, "seal");
   with(
       "box_2_2.hdf", [](const fs::path& path) { fs::resize_file(path, 0); }, "seal");
+  nlohmann::ordered_json forged{{"achieved", 5}};
+  forged["seal"] = {{"summary", report::hexadecimal(report::digest_of(forged))}};
+  for (const std::string& text : {std::string("{}"), std::string(R"({"seal": "x"})"),
+                                  std::string(R"({"seal": {"summary": 7}})"), forged.dump()}) {
+    with(
+        "box_2_1.json", [&](const fs::path& path) { std::ofstream(path) << text; }, "edited");
+  }
   with(
-      "box_2_1.json", [](const fs::path& path) { std::ofstream(path) << "{}"; }, "edited");
+      "box_2_1.json", [](const fs::path& path) { fs::resize_file(path, std::uintmax_t{65} << 20); }, "no summary");
   with(
       "box_2_1.json",
       [&](const fs::path& path) {
