@@ -2,7 +2,8 @@
 """Runs every scene of this folder and holds it to what its first lines expect.
 
 usage: run.py FOLDER [-k PART] -- [mpirun -n N] packmpi       runs them in FOLDER; those whose names contain PART
-       run.py FOLDER --table OLD NEW                          digests of the packs that two programs make, as Markdown
+       run.py FOLDER --table OLD NEW [-k PART]                digests of the packs that two programs make, as Markdown;
+                                                              of the paper's scenes, too, cut to two layers
 
 The corpus is of the paper's law, friction by "stop", and packs are as they are after their last layer.
 
@@ -21,7 +22,11 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-FORMER_KEYS = {"relaxation = ": "thaw = "}   # of the programs before 0.2.0, for --table
+# Of the programs before 0.2.0, for --table.
+FORMER_KEYS = {"relaxation = ": "thaw = ", 'tangential = "sliding"\n': ""}
+NEW_KINDS = ('tangential = "mindlin"', 'region = "container"')   # scenes that they cannot make
+NEW_KEYS = ("rest.",)
+PAPER = ["--set", "layers.maximum=2", "--set", "rest.wait=0"]   # the last of its packs: no stage after the layers
 
 
 def head(scene: Path, word: str) -> list[str]:
@@ -32,7 +37,7 @@ def head(scene: Path, word: str) -> list[str]:
 class Run:
     """One scene in a folder of its own, made by `command`."""
 
-    def __init__(self, scene: Path, text: str, folder: Path, command: list[str]):
+    def __init__(self, scene: Path, text: str, folder: Path, command: list[str], arguments: list[str]):
         self.folder = folder
         self.pack = folder / f"{scene.stem}.hdf"
         self.command = command
@@ -40,11 +45,11 @@ class Run:
         for old in folder.iterdir():
             old.unlink()
         (folder / scene.name).write_text(text)
-        done = self.call(command, "run", scene.name, "-q", *shlex.split(" ".join(head(scene, "with"))))
+        done = self.call(command, "run", scene.name, "-q", *arguments)
         self.code, self.words = done.returncode, done.stdout
 
     def call(self, command: list[str], *arguments: str) -> subprocess.CompletedProcess:
-        return subprocess.run([*command, *arguments], cwd=self.folder, timeout=120, text=True,
+        return subprocess.run([*command, *arguments], cwd=self.folder, timeout=600, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def digest(self) -> str:
@@ -80,7 +85,7 @@ def check(folder: Path, part: str, command: list[str]) -> int:
     scenes = [scene for scene in sorted(HERE.glob("*.toml")) if part in scene.stem]
     failures = 0
     for scene in scenes:
-        run = Run(scene, scene.read_text(), folder / scene.stem, command)
+        run = Run(scene, scene.read_text(), folder / scene.stem, command, with_arguments(scene))
         expectations = head(scene, "expect")
         flaws = [words for words in (flaw(run, expected) for expected in expectations) if words]
         if not expectations:
@@ -92,17 +97,29 @@ def check(folder: Path, part: str, command: list[str]) -> int:
     return 1 if failures or not scenes else 0
 
 
-def table(folder: Path, old: str, new: str) -> int:
+def with_arguments(scene: Path) -> list[str]:
+    return shlex.split(" ".join(head(scene, "with")))
+
+
+def without_new_keys(arguments: list[str]) -> list[str]:
+    """Pairs of --set and an assignment, those that the former program knows."""
+    pairs = zip(arguments[::2], arguments[1::2])
+    return [word for pair in pairs if not pair[1].startswith(NEW_KEYS) for word in pair]
+
+
+def table(folder: Path, old: str, new: str, part: str) -> int:
     print("| scene | before | after | |\n|---|---|---|---|")
     different = 0
-    for scene in sorted(HERE.glob("*.toml")):
-        if not any(expected.startswith("digest") for expected in head(scene, "expect")):
-            continue
+    paper = sorted((HERE.parents[1] / "input").glob("paper_5_*.toml"))
+    kinds = [scene for scene in sorted(HERE.glob("*.toml")) if any(words.startswith("digest") for words in head(scene, "expect"))
+             and not any(key in scene.read_text() for key in NEW_KINDS)]
+    for scene in [scene for scene in paper + kinds if part in scene.stem]:
+        arguments = PAPER if scene in paper else with_arguments(scene)
         text = former = scene.read_text()
         for now, then in FORMER_KEYS.items():
             former = former.replace(now, then)
-        before = Run(scene, former, folder / "old", [old]).digest()
-        after = Run(scene, text, folder / "new", [new]).digest()
+        before = Run(scene, former, folder / "old", [old], without_new_keys(arguments)).digest()
+        after = Run(scene, text, folder / "new", [new], arguments).digest()
         different += before != after
         print(f"| `{scene.stem}` | {before} | {after} | {'same' if before == after else 'DIFFERENT'} |", flush=True)
     return 1 if different else 0
@@ -113,8 +130,9 @@ def main() -> int:
     if "--" in arguments:
         at = arguments.index("--")
         arguments, command = arguments[:at], arguments[at + 1:]
-    if len(arguments) == 4 and arguments[1] == "--table":
-        return table(Path(arguments[0]), str(Path(arguments[2]).resolve()), str(Path(arguments[3]).resolve()))
+    if len(arguments) in (4, 6) and arguments[1] == "--table":
+        old, new = (str(Path(program).resolve()) for program in arguments[2:4])
+        return table(Path(arguments[0]), old, new, arguments[5] if arguments[4:5] == ["-k"] else "")
     if not command or len(arguments) not in (1, 3) or arguments[1:2] not in ([], ["-k"]):
         sys.exit(__doc__)
     return check(Path(arguments[0]), arguments[2] if len(arguments) == 3 else "", command)
