@@ -37,10 +37,8 @@ class Run:
                 "layers.attempts=2000"]
 
     def layers(self):
-        """The bed after each layer: dictionaries of numbers; none if the run is not done."""
-        if not self.file.exists():
-            return []
-        with open(self.file, newline="") as file:
+        """The bed after each layer: dictionaries of numbers; of a run that is not done, as far as it went."""
+        with open(self.file if self.file.exists() else self.file.with_suffix(".part"), newline="") as file:
             return [{key: value if key == "end" else float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
@@ -95,10 +93,10 @@ def main():
                 for example in options.examples for rotation in ("on", "off")]
         make([run for run in runs if not run.file.exists()], options.program, options.jobs)
     kept = [Run(options.results, way, *file.stem.split("_")[:2], int(file.stem.split("_")[2]))
-            for way in report.WAYS for file in sorted((options.results / way.name).glob("*.csv"))]
+            for way in report.WAYS for file in sorted((options.results / way.name).glob("*.*"))]
     if not kept:
         fail(f"there are no runs in {options.results}")
-    report.write(options.doc, [(run, run.layers()) for run in kept])
+    report.write(options.doc, [(run, run.layers()) for run in kept if run.layers()])
     return 0
 
 

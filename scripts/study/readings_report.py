@@ -46,6 +46,7 @@ STOPS = {
     "surface": ("open", "open; mean surface ≥ H_d", lambda row, target: row["surface"] >= target),
     "tenth": ("open", "open; highest tenth ≥ H_d", lambda row, target: row["tenth"] >= target),
 }
+UNFINISHED = "unfinished"   # rows of a run that was cut short, with the last layer that it has
 VOLUMES = {"phi": "H_d", "phi_surface": "its mean surface", "phi_highest": "its highest top"}
 
 
@@ -65,8 +66,9 @@ def packs_of(runs):
     """Rows of doc/data/readings.csv: each run, of which its layers are given, under each rule that ends it."""
     rows = []
     for run, layers in runs:
-        for stop in STOPS:
-            last = last_layer(layers, stop, TARGET)
+        done = run.file.exists()
+        for stop in STOPS if done else [UNFINISHED]:
+            last = last_layer(layers, stop, TARGET) if done else layers[-1]
             if last is not None:
                 rows.append({"way": run.way.name, "stop": stop, "example": run.example, "rotation": run.rotation, "seed": run.seed,
                              **{key: last[key] for key in ("layer", "particles", "highest", "surface", *VOLUMES)}})
@@ -76,8 +78,9 @@ def packs_of(runs):
 class Reading:
     """One reading of the method: its packs in each of the eight columns."""
 
-    def __init__(self, way, stop, volume, packs, paper):
+    def __init__(self, way, stop, volume, packs, paper, bounds):
         self.way, self.stop, self.volume, self.packs, self.paper = way, stop, volume, packs, paper
+        self.bounds = bounds   # of columns without packs: a fraction that the bed passes already before its last layers
 
     def values(self, column):
         return [float(row[self.volume]) for row in self.packs.get(column, [])]
@@ -85,6 +88,10 @@ class Reading:
     def off(self, column):
         """Distance of the means, in the paper's standard deviations."""
         return (tables.mean(self.values(column)) - tables.mean(self.paper[column])) / tables.sd(self.paper[column])
+
+    def least_off(self, column):
+        """The same of a bound."""
+        return (self.bounds[column] - tables.mean(self.paper[column])) / tables.sd(self.paper[column])
 
     @property
     def measured(self):
@@ -97,7 +104,8 @@ class Reading:
     @property
     def excluded(self):
         """Is a column off by more than so few packs could be by chance, even if they vary as the paper's do?"""
-        return any(abs(self.off(column)) > tables.PAPER_SDS * (1.0 + 1.0 / math.sqrt(len(self.values(column)))) for column in self.measured)
+        return any(abs(self.off(column)) > tables.PAPER_SDS * (1.0 + 1.0 / math.sqrt(len(self.values(column)))) for column in self.measured) or \
+            any(self.least_off(column) > 2.0 * tables.PAPER_SDS for column in self.bounds)
 
     @property
     def worst(self):
@@ -132,13 +140,18 @@ def readings_of(rows, paper):
                         packs.setdefault((row["example"], row["rotation"]), []).append(row)
                 for column, all_packs in packs.items():   # packmpi's are ten
                     packs[column] = [row for row in all_packs if row["program"] == "packmpi"] or all_packs
+                bounds = {(row["example"], row["rotation"]): float(row[volume]) for row in rows
+                          if (row["way"], row["stop"], volume) == (way.name, UNFINISHED, "phi_surface")}
                 if packs:
-                    found.append(Reading(way, stop, volume, packs, paper))
+                    found.append(Reading(way, stop, volume, packs, paper, {c: bounds[c] for c in bounds if c not in packs}))
     return found
 
 
 def cell(reading, column):
     values = reading.values(column)
+    if not values and column in reading.bounds:
+        mark = "" if reading.least_off(column) <= tables.PAPER_SDS else "**"
+        return f"{mark}> {reading.bounds[column]:.3f}{mark}"
     if not values:
         return ""
     mark = "" if abs(reading.off(column)) <= tables.PAPER_SDS else "**"
@@ -166,7 +179,7 @@ def section(data):
     for row in tables.read(data / "paper_tables.csv"):
         paper[row["example"], row["rotation"]].append(float(row["phi"]))
     readings = readings_of(rows_of(data), paper)
-    readings.sort(key=lambda one: (-len(one.measured), one.score))
+    readings.sort(key=lambda one: (-len(one.measured), one.excluded, one.score))
     meeting = [one for one in readings if one.met == len(COLUMNS)]
     excluded = [one for one in readings if one.excluded]
     partly = [one for one in readings if not one.excluded and len(one.measured) < len(COLUMNS)]
@@ -175,7 +188,8 @@ is. `scripts/study/readings.py` tries them. {len(readings)} readings: {len(meeti
 2 + 2 / sqrt(packs) sd, and {len(partly)} are not excluded by the columns that were run. Below are those of which most columns were run, and of them the nearest:
 the number of packs in brackets, **bold** what is off by more than 2 sd; rms and worst are the distances of the means in the paper's standard deviations. "Discs" and
 "spheres" are particles inserted, from the least to the most. The row of all eight columns is packmpi as it is; "i" is an independent serial program
-([data/readings_independent.csv](data/readings_independent.csv)). Packs: [data/readings.csv](data/readings.csv). "The highest top", "at H_d", V to H_d is `layers.region = "container"`.""".splitlines()
+([data/readings_independent.csv](data/readings_independent.csv)); ">" is from a run that was cut short: with V up to the surface phi rises layer by layer, and it had that
+already. Packs: [data/readings.csv](data/readings.csv). "The highest top", "at H_d", V to H_d is `layers.region = "container"`.""".splitlines()
     return [BEGIN, *words, "", *table_of(readings[:SHOWN]), END]
 
 

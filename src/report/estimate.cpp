@@ -97,7 +97,8 @@ std::string to_table(const Estimate& e) {
        fmt::format("{:.4f} +- {:.3f}{}", e.fraction, e.fraction_error, e.fraction_given ? ", as given" : ""));
   line("porosity, void ratio", fmt::format("{:.4f}, {:.4f}", porosity(e.fraction), void_ratio(e.fraction)));
   line("particles", range(e.particles));
-  line("layers", fmt::format("{}, of {} particles each", range(e.layers), e.a_layer));
+  const bool whole = e.particles.value == e.layers.value * e.a_layer;  // not those that end at H_d
+  line("layers", fmt::format("{}, of {} particles {}", range(e.layers), e.a_layer, whole ? "each" : "at most"));
   line("height of the bed [m]", fmt::format("{:.4g}", e.height));
   line("time steps", fmt::format("{}{}, {} of them in the final stage", e.steps, most, e.relaxation_steps));
   line("simulated time [s]", fmt::format("{:.4g}{}", e.duration, most));
