@@ -36,11 +36,6 @@ bool has_pack(std::int64_t code) {
 
 constexpr std::array table_endings{".ensemble.csv", ".ensemble.json", ".ensemble.md"};
 
-bool is_there(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 // What a user set for the whole ensemble, as far as this group of ranks has not used it up.
 class Budget {
  public:

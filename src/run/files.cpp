@@ -16,11 +16,6 @@ namespace {
 constexpr double densest = 0.75;                         // no random bed has more solid than this; 2D: 0.91
 constexpr double bytes_a_particle = 112.0 + 2.0 * 88.0;  // of a pack file and two checkpoints
 
-bool there(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
-
 void remove_if_there(const std::string& path) {
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
@@ -28,11 +23,11 @@ void remove_if_there(const std::string& path) {
 
 void check_free(const Files& files, const Options& options) {
   const auto refuse = [](const std::string& words) { throw Error(ExitCode::bad_input, words); };
-  if (there(files.stop) && !options.member) refuse(files.stop + " exists and would end the run at once; remove it");
+  if (is_there(files.stop) && !options.member) refuse(files.stop + " exists and would end the run at once; remove it");
   if (options.force) return;
-  const bool unfinished = there(files.slots[0]) || there(files.slots[1]);
+  const bool unfinished = is_there(files.slots[0]) || is_there(files.slots[1]);
   if (!options.restart.empty()) {
-    if (!unfinished && there(files.pack) && there(files.summary)) {
+    if (!unfinished && is_there(files.pack) && is_there(files.summary)) {
       refuse(files.pack + " exists and there is no checkpoint: the run is finished; use --force to make it anew");
     }
     return;
@@ -41,10 +36,10 @@ void check_free(const Files& files, const Options& options) {
     refuse(
         fmt::format("there are checkpoints of an unfinished run ({}); --restart auto goes on from them, --force "
                     "begins anew",
-                    there(files.slots[0]) ? files.slots[0] : files.slots[1]));
+                    is_there(files.slots[0]) ? files.slots[0] : files.slots[1]));
   }
   for (const std::string& path : {files.pack, files.summary, files.log, files.steps}) {
-    if (there(path)) refuse(fmt::format("{} exists; use --force to replace it, or -o FOLDER", path));
+    if (is_there(path)) refuse(fmt::format("{} exists; use --force to replace it, or -o FOLDER", path));
   }
 }
 
@@ -67,6 +62,11 @@ double expected_particles(const scene::Scene& scene) {
   const double a_layer = layers.fraction * scene.container.floor_area() * layers.thickness / mean + 1.0;
   const double full = solid / mean;
   return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;
+}
+
+bool is_there(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
 }
 
 Files files_of(const std::string& name, const Options& options) {

@@ -18,6 +18,9 @@ struct Files {
   std::string lock;                  ///< held while a run with these outputs is at work
 };
 
+/// Local. Also false where one may not look.
+[[nodiscard]] bool is_there(const std::string& path);
+
 /// The names of a scene's outputs. Local.
 [[nodiscard]] Files files_of(const std::string& name, const Options& options);
 

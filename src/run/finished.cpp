@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/log.hpp"
 #include "disk/lock.hpp"
 #include "pack/pack.hpp"
@@ -15,11 +13,6 @@
 
 namespace packmpi::run {
 namespace {
-
-bool is_there(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
 
 bool over(const Files& files) {
   return is_there(files.pack) && is_there(files.summary) && !is_there(files.slots[0]) && !is_there(files.slots[1]);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <limits>
 
 #include "base/log.hpp"
@@ -120,8 +119,7 @@ bool Keeper::stop_file_there() {
   const double now = watch_.seconds();
   if (now - stop_seen_at_ < stop_interval) return false;
   stop_seen_at_ = now;
-  std::error_code ignored;
-  return std::filesystem::exists(files_.stop, ignored);
+  return is_there(files_.stop);
 }
 
 void Keeper::write() {
