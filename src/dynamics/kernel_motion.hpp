@@ -10,7 +10,8 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalInde
   using M = Memory<F>;
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
-  const geometry::Plane& plane = data.planes[static_cast<unsigned>(wall)];
+  // A copy: the block that is written below cannot alias it.
+  const geometry::Plane plane = data.planes[static_cast<unsigned>(wall)];
   for (int a = 0; a < layout.stride; ++a) {
     b.in[a][p] = M::sign(a, false) != 0 ? -record[a] : record[a];
     if (M::reads(a) > 1) b.again[a][p] = M::sign(a, true) != 0 ? -record[a] : record[a];
