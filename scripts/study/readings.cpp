@@ -4,14 +4,14 @@
 // scripts/study/readings.py. Bed, contact law and steps are those of packmpi; the insertion is a serial loop of its own
 // that rejects overlaps with the bed too, so that a region may begin below the highest top.
 //   FROM    the region begins at: highest (top), surface (mean over columns of the highest tops), tenth (mean of the
-//           highest tenth of them), lowest (of them)
+//           highest tenth of them)
 //   SHIFT   ... plus so many mean diameters
 //   OF      phi_0 is a fraction of: region (the region's volume), centres (the volume that its centres may be in)
 //   ENDS    names of those below, with commas
 // One trunk of layers, as long as they end below H_d, has three ends: "open", where they go on beyond H_d; "container",
-// where a region ends at H_d; "whole", the same with as many particles as a whole layer would have. A clipped layer
-// that cannot be filled keeps what it has. Prints a line of CSV for each layer of the trunk and of each end, after its
-// dynamics; an end is over when nothing can be inserted, an open one when every height has come to H_d.
+// where a region ends at H_d; "whole", the same with as many particles as a whole layer would have. What finds no
+// room in layers.attempts trials is left out. Prints a line of CSV for each layer of the trunk and of each end, after
+// its dynamics; an end is over when nothing can be inserted, an open one when every height has come to H_d.
 #include <fmt/core.h>
 #include <mpi.h>
 
@@ -73,19 +73,18 @@ double mean_of(const std::vector<double>& values, std::size_t from = 0) {
 
 // The heights a bed may be said to have [m].
 struct Heights {
-  double highest, surface, tenth, lowest;
+  double highest, surface, tenth;
 };
 Heights heights_of(const run::Bed& bed) {
   const std::vector<double> tops = column_tops(bed);
-  return {tops.back(), mean_of(tops), mean_of(tops, tops.size() - std::max<std::size_t>(1, tops.size() / 10)), tops[0]};
+  return {tops.back(), mean_of(tops), mean_of(tops, tops.size() - std::max<std::size_t>(1, tops.size() / 10))};
 }
 
 double base_of(const Reading& reading, const Heights& heights) {
   if (reading.from == "highest") return heights.highest;
   if (reading.from == "surface") return heights.surface;
   if (reading.from == "tenth") return heights.tenth;
-  if (reading.from == "lowest") return heights.lowest;
-  throw std::invalid_argument("FROM is highest, surface, tenth or lowest");
+  throw std::invalid_argument("FROM is highest, surface or tenth");
 }
 
 struct Region {

@@ -200,12 +200,13 @@ def chapter(data):
 
 
 def write(doc, runs):
-    """doc/data/readings.csv, and the table into doc/reproduction.md."""
+    """doc/data/readings.csv, if there are runs, and the table into doc/reproduction.md."""
     rows = packs_of(runs)
-    with open(doc / "data" / "readings.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    if rows:
+        with open(doc / "data" / "readings.csv", "w", newline="") as file:
+            writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
     page = doc / "reproduction.md"
     lines = section(doc / "data")
     page.write_text(re.sub(f"{BEGIN}.*{END}", lambda _: "\n".join(lines), page.read_text(), flags=re.DOTALL))
