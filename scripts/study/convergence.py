@@ -26,7 +26,7 @@ COLUMNS = ["scene", "variant", "seed", "spheres", "phi_bulk", "coordination", "c
 
 def rows_of(options):
     workshop = Workshop(options.program, options.results)
-    base = measuring.bare_scene("paper_5_3", options.results)
+    base = measuring.bare_scene("paper_5_3", options.results, ["regularisation"])
     more = dict(change.split("=", 1) for change in options.set)
     for scene in options.scenes:
         changes, seeds, _ = SCENES[scene]

@@ -27,7 +27,7 @@ SCENES = {
                               "particles.youngs_modulus": "3e7", "particles.radius": '{distribution="equal",value=0.001}', "layers.thickness": "0.008",
                               "layers.duration": "0.15", "jamming.gravity": "9.81", "contact.friction": "0.5", "drag.coefficient": "0.0",
                               "dynamics.time_step": "1e-5"}),
-    "graded": ("paper_5_4", {"container.size": "[0.4,0.4,0.4]", "container.boundary": '["periodic","periodic"]', "fidelity": "paper"}),
+    "graded": ("paper_5_4", {"container.size": "[0.4,0.4,0.4]", "container.boundary": '["periodic","periodic"]', "fidelity": "balanced"}),
 }
 CODES = ("lammps", "liggghts", "yade")
 COLUMNS = ["scene", "code", "spheres", "steps", "phi_bulk", "sinking", "largest_displacement", "mean_displacement", "kinetic_first", "kinetic_peak", "kinetic_last",
@@ -93,7 +93,7 @@ def measure(options, name):
     folder = options.results / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    scene = measuring.bare_scene(file, folder) if file.startswith("paper") else measuring.ROOT / f"input/{file}.toml"
+    scene = measuring.bare_scene(file, folder, ["regularisation"]) if file.startswith("paper") else measuring.ROOT / f"input/{file}.toml"
     words = measuring.options_of(changes) + [word for change in options.set for word in ("--set", change)]
     run([options.program, scene, "-q", "-o", folder, *words], folder, folder / "packmpi.said")
     path = folder / f"{file}.hdf"

@@ -33,7 +33,7 @@ COLUMNS = ["part", "code", "mu", "rolling", "modulus", "seed", "spheres", "phi_b
 
 def memory(mu, rough=False, more=()):
     """Friction with memory. Without friction only the normal damping ends motion, and that takes longer."""
-    return {"contact.tangential": "mindlin", "contact.friction": str(mu), **(ROUGH if rough else {}), **({"layers.duration": "1.0"} if mu < 0.02 else {}),
+    return {"contact.tangential": "mindlin", "contact.friction": str(mu), "rest.wait": "0", **(ROUGH if rough else {}), **({"layers.duration": "1.0"} if mu < 0.02 else {}),
             **dict(more)}
 
 
@@ -53,7 +53,7 @@ def planned(options):
             yield from (("stiffness", "packmpi", SCENE, memory(mu, more=stiff), seed) for seed in range(1, min(2, options.seeds) + 1))
     for mu in rest_report.INDEPENDENT:
         for seed in range(1, min(2, options.seeds) + 1):
-            yield "layers", "packmpi", measuring.bare_scene("paper_5_3", options.results), memory(mu, more=LAYERS), seed
+            yield "layers", "packmpi", measuring.bare_scene("paper_5_3", options.results, ["regularisation"]), memory(mu, more=LAYERS), seed
 
 
 def row_of(workshop, part, code, scene, changes, seed):

@@ -26,16 +26,19 @@ DEFAULTS = {"tangential": "sliding", "rolling_friction": 0.0, "twisting_friction
 START = {"jamming.gravity": "0", "layers.duration": "1e-5", "dynamics.time_step": "1e-5"}   # nothing moves: positions as inserted
 
 
-def run(words, folder, log):
-    """Runs a program; what it said and the CPU seconds that it took. Code 3, a missed target of packmpi, is no error."""
+def run(words, folder, log, any_code=False):
+    """Runs a program; what it said and the CPU seconds that it took, and its exit code if any is wanted. Code 3, a missed target of packmpi, is no error."""
     before = os.times()
     with open(log, "w", encoding="utf-8") as file:
         done = subprocess.run(["nice", "-n", os.environ.get("NICE", "10"), *map(str, words)], cwd=folder, env=measuring.ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=file,
                               stderr=subprocess.STDOUT, check=False)
     after, said = os.times(), Path(log).read_text(encoding="utf-8", errors="replace")
+    seconds = after.children_user + after.children_system - before.children_user - before.children_system
+    if any_code:
+        return said, seconds, done.returncode
     if done.returncode not in (0, 3):
         sys.exit(f"{' '.join(map(str, words))}\n{said[-2000:]}\nended with {done.returncode}")
-    return said, after.children_user + after.children_system - before.children_user - before.children_system
+    return said, seconds
 
 
 def digest(*parts):
@@ -170,7 +173,10 @@ def placing(values):
 
 
 def packmpi_recipe(values, law):
-    return {key: table for key, table in values.items() if key not in ("seed", "parallel", "checkpoint", "output", "petsc", "ensemble")}
+    """What a pack is made from. Limits of rest belong to it if the final stage waits for them."""
+    idle = {"seed", "fidelity", "parallel", "checkpoint", "output", "petsc", "ensemble"} | ({"rest"} if values["rest"]["wait"] == 0.0 else set())
+    contact = {key: value for key, value in values["contact"].items() if key != "restitution"}   # the damping ratio says it
+    return {key: table for key, table in values.items() if key not in idle} | {"contact": contact}
 
 
 def lammps_recipe(values, law):

@@ -235,11 +235,11 @@ def write(doc, rows, scenes, knobs, reference):
     total = sum(float(row["cpu_seconds"]) for row in rows)
     commits = sorted({row["commit"] for row in rows})
     text = [f"{measuring.made_by('scripts/study/tradeoff.py')}: {len(rows)} runs, {total / 60.0:.0f} minutes of CPU time, one rank each, "
-            f"commits {', '.join(commits)}.", "", "### The presets", "", *presets(rows, scenes, reference),
-            "### What the packs are like inside", "", *inside(rows, scenes, reference),
-            "### One knob at a time", "", *single_knobs(rows, knobs, reference),
-            "### Smaller steps", "", *convergence(rows, scenes),
-            "### The references", "",
+            f"commits {', '.join(commits)}.", "", "#### The presets", "", *presets(rows, scenes, reference),
+            "#### What the packs are like inside", "", *inside(rows, scenes, reference),
+            "#### One knob at a time", "", *single_knobs(rows, knobs, reference),
+            "#### Smaller steps", "", *convergence(rows, scenes),
+            "#### The references", "",
             *(f"* `{scene}`: {words}; {reference_words(made(rows, scene, reference))}." for scene, (*_, words) in scenes.items()
               if made(rows, scene, reference))]
     print("\n".join(text))
