@@ -168,7 +168,7 @@ std::uint32_t fill(run::Bed& bed, const Reading& reading, End end, std::uint32_t
   const double target = scene.container.height();
   const double radius = scene.sizes.mean();
   const auto steps = static_cast<std::int64_t>(std::llround(scene.in.layers.duration / scene.time_step));
-  for (const auto most = static_cast<std::uint32_t>(2 * scene::most_layers(scene.in)); layer < most; ++layer) {
+  for (const auto most = static_cast<std::uint32_t>(2 * scene::most_layers(scene)); layer < most; ++layer) {
     const Heights now = heights_of(bed);
     if (now.surface - radius >= target) break;
     const double whole = scene.in.layers.thickness;

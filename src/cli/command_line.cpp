@@ -17,8 +17,8 @@
 #include "cli/command_docs.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_schema.hpp"
-#include "input/units.hpp"
 #include "packmpi/version.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::cli {
 namespace {
@@ -173,7 +173,7 @@ void declare_convert(CLI::App& app, Request& request) {
 // A length above 0 [m]: "0.2", or "20 cm".
 std::optional<double> read_length(const std::string& text) {
   const std::optional<double> plain = read_number<double>(text);
-  const std::optional<double> length = plain ? plain : input::parse_scalar(text, input::length).value;
+  const std::optional<double> length = plain ? plain : tables::parse_scalar(text, tables::length).value;
   return length && *length > 0.0 && std::isfinite(*length) ? length : std::nullopt;
 }
 

@@ -14,17 +14,18 @@
 #include "cli/info.hpp"
 #include "comm/petsc.hpp"
 #include "disk/text_file.hpp"
+#include "ensemble/ensemble.hpp"
 #include "forecast/estimate.hpp"
 #include "input/fidelity.hpp"
 #include "input/restitution.hpp"
 #include "input/starter.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
-#include "run/ensemble.hpp"
 #include "run/files.hpp"
 #include "run/finished.hpp"
 #include "run/make_pack.hpp"
 #include "run/signals.hpp"
+#include "run/start.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
 
@@ -34,6 +35,7 @@ namespace {
 /// On rank 0.
 void warn_of_step(const scene::Scene& scene) {
   const double safe = scene::safe_time_step(scene.in, scene.sizes);
+  if (insertion_alone(scene.in)) return;
   if (scene.time_step > safe) {
     log::warn(fmt::format(
         "time step {:g} s is beyond eq. (23) for the smallest particles ({:.3g} s), though not for the mean",
@@ -46,12 +48,29 @@ void warn_of_softness(const scene::Scene& scene) {
   const double modulus = scene.in.particles.youngs_modulus;
   const double overlap = scene::expected_overlap(scene, modulus);
   const double limit = scene.in.rest.mean_overlap;
-  if (overlap <= limit) return;
+  if (overlap <= limit || insertion_alone(scene.in)) return;
   log::warn(
       fmt::format("particles.youngs_modulus: under the bed's weight particles will overlap by about {:.2g} radii "
                   "in the mean, beyond rest.mean_overlap = {:g}: the run is going to end with code 3; {:.1e} Pa "
                   "or more would do",
                   overlap, limit, scene::modulus_for(scene, limit, modulus)));
+}
+
+std::string fines_words(const scene::Fines& fines) {
+  return fmt::format("the finest 5 % by mass, below {:.3g} m, are {:.0f} % of about {:.2g} particles", fines.diameter,
+                     100.0 * fines.share, fines.particles);
+}
+
+/// On rank 0.
+void warn_of_fines(const scene::Scene& scene) {
+  constexpr double many = 1e6, most = 0.5;
+  const auto fines = scene::fines(scene);
+  if (!fines || fines->particles < many || fines->share < most) return;
+  const auto& [from, to] = scene.in.particles.radius.keep_percent;
+  log::warn(
+      fmt::format("particles.radius: {}; keep_percent = [{:g}, {:g}] leaves them out, and about {:.2g} particles "
+                  "in their place",
+                  fines_words(*fines), from + 0.05 * (to - from), to, fines->without));
 }
 
 // `packmpi check`: the scene as it will be used, and what follows from it.
@@ -65,6 +84,12 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
+    for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
+    if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", fines_words(*fines));
+    if (insertion_alone(scene.in)) {
+      print(words + "# insertion alone: no step is taken\n");
+      return 0;
+    }
     const double modulus = scene.in.particles.youngs_modulus;
     words += fmt::format("# mean overlap at rest about {:.2g} radii; 1 % would be at a modulus of {:.1e} Pa\n",
                          scene::expected_overlap(scene, modulus), scene::modulus_for(scene, 0.01, modulus));
@@ -73,6 +98,10 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
                          scene.in.contact.damping_ratio);
     words +=
         fmt::format("# time step of layers {:g} s, relaxation {:g} s\n", scene.settling.time_step, scene.relaxation);
+    if (scene.in.particles.count > 0) {
+      words += fmt::format("# particles.count: they come to a height of about {:.3g} m\n",
+                           scene::expected_filling(scene, scene::expected_fraction(scene).value).height);
+    }
     words += fmt::format("# fidelity = \"{}\":\n", scene.in.fidelity);
     for (const std::string& line : input::preset_in_use(scene.in)) words += fmt::format("#   {}\n", line);
     print(words);
@@ -125,15 +154,16 @@ std::string told(const comm::Comm& comm, const Request& request) {
 // Of `run` and `check`.
 int use_scene(const comm::Comm& comm, const Request& request) {
   const Occupation now("the scene and its lateral grid");
-  const input::Input in = input::read(comm, request.run.scene, request.run.overrides);
+  const input::Input in = run::with_start(comm, input::read(comm, request.run.scene, request.run.overrides));
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   expect_memory(forecast::memory_a_rank(scene, comm.size()));
   if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
-    return run::make_ensemble(comm, in, request.run);
+    return ensemble::make_ensemble(comm, in, request.run);
   if (comm.rank() == 0) {
     warn_of_step(scene);
     warn_of_softness(scene);
+    warn_of_fines(scene);
   }
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
 }

@@ -1,6 +1,7 @@
 #include "cli/scene_schema.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <type_traits>
@@ -46,6 +47,7 @@ Json list_schema(const Json& entry) { return {{"type", "array"}, {"items", entry
 Json schema_of(const Key& key) {
   input::Input sample;
   sample.near_field.emplace();
+  sample.start.emplace();
   Json schema = std::visit(
       [&](const auto* slot) -> Json {
         using Value = std::remove_cvref_t<decltype(*slot)>;
@@ -89,6 +91,31 @@ void require(Json& root, std::string_view path) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
+// What only insertion alone (layers.duration = 0) does without.
+constexpr std::array<std::string_view, 3> of_layers{"layers.thickness", "layers.fraction", "jamming.gravity"};
+
+void require_of_layers(Json& root) {
+  root["required"].push_back("layers");
+  root["if"]["properties"]["layers"] = {{"required", Json::array({"duration"})},
+                                        {"properties", {{"duration", {{"enum", Json::array({0})}}}}}};
+  const auto names = [](auto... name) { return Json{{"required", Json::array({name...})}}; };
+  root["else"] = names("jamming");
+  root["else"]["properties"] = {{"layers", names("thickness", "fraction")}, {"jamming", names("gravity")}};
+}
+
+// A table `diameter` may stand for `radius`.
+void allow_diameters(Json& particles) {
+  Json diameter = particles["properties"]["radius"];
+  Json& properties = diameter["properties"];
+  properties["diameters"] = properties["radii"];
+  properties.erase("radii");
+  particles["properties"]["diameter"] = diameter;
+  Json& names = particles["required"];
+  names.erase(std::remove(names.begin(), names.end(), "radius"), names.end());
+  const auto with = [](const char* name) { return Json{{"required", Json::array({name})}}; };
+  particles["oneOf"] = Json::array({with("radius"), with("diameter")});
+}
+
 }  // namespace
 
 std::string scene_schema() {
@@ -102,8 +129,11 @@ std::string scene_schema() {
     const std::string_view table = dot == std::string_view::npos ? "" : key.path.substr(0, dot);
     Json& object = table_at(root, table);
     object["properties"][std::string(key.path.substr(dot + 1))] = schema_of(key);
-    if (!key.standard && key.when.holds == nullptr) require(root, key.path);
+    const bool always = key.when.holds == nullptr && std::ranges::find(of_layers, key.path) == of_layers.end();
+    if (!key.standard && always) require(root, key.path);
   }
+  require_of_layers(root);
+  allow_diameters(root["properties"]["particles"]);
   return root.dump(2) + "\n";
 }
 

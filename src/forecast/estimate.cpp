@@ -8,7 +8,6 @@
 
 #include "forecast/probe.hpp"
 #include "geometry/volume.hpp"
-#include "input/units.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "report/fields.hpp"
@@ -17,6 +16,7 @@
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
 #include "scene/pair_channels.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::forecast {
 namespace {
@@ -79,7 +79,7 @@ double fit_floor(const scene::Scene& scene, double particles, double fraction) {
 
 std::string list(const std::vector<double>& numbers) {
   std::string text;
-  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : ",", input::number(x));
+  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : ",", tables::number(x));
   return fmt::format("[{}]", text);
 }
 
@@ -135,6 +135,10 @@ void scale_floor(const Question& question, double area, std::vector<double>& siz
 scene::Scene solved(const comm::Comm& comm, const Source& source, const Question& question, Unknown& unknown) {
   scene::Scene scene = changed(comm, source, {});
   std::vector<double> size = scene.in.container.size;
+  if (question.particles && scene.in.particles.count > 0) {
+    refuse(fmt::format("--particles: the scene has particles.count = {}; leave one of them out",
+                       scene.in.particles.count));
+  }
   unknown = unknown_of(question, scene.container.lateral_axes());
   if (question.height) size.back() = *question.height;
   for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
@@ -164,7 +168,7 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
           fmt::format("{} particles are less than a layer on this floor; make the floor smaller (--floor)", particles));
     }
     size.back() = fitted.height;
-    scene = changed(comm, source, {size_key(size), "layers.thickness=" + input::number(fitted.thickness)});
+    scene = changed(comm, source, {size_key(size), "layers.thickness=" + tables::number(fitted.thickness)});
   }
   return scene;
 }
@@ -267,10 +271,11 @@ void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, r
   const auto by_chance = [&](std::int64_t count) {  // two standard deviations
     return std::llround(2.0 * scene::deviation_of_count(scene, static_cast<double>(count)));
   };
+  e.height = usual.height;
   e.particles = {usual.particles, least.particles, most.particles};
+  if (scene.in.particles.count > 0) return;  // exactly
   e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least) - least.uncertainty);
   e.particles.most += by_chance(e.particles.most) + most.uncertainty;
-  e.height = usual.height;
 }
 
 void add_steps(const scene::Scene& scene, report::Estimate& e) {
@@ -301,8 +306,9 @@ void add_probe(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   got.particle_steps_per_second = comm.min(got.particle_steps_per_second);
   got.insertions_per_second = comm.min(got.insertions_per_second);
   e.probe = got;
-  e.seconds = static_cast<double>(e.particle_steps) / (got.particle_steps_per_second * e.ranks) +
-              static_cast<double>(e.particles.value) / (got.insertions_per_second * e.ranks);
+  e.seconds = static_cast<double>(e.particles.value) / (got.insertions_per_second * e.ranks);
+  if (e.particle_steps > 0)
+    e.seconds += static_cast<double>(e.particle_steps) / (got.particle_steps_per_second * e.ranks);
 }
 
 }  // namespace

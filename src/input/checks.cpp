@@ -39,6 +39,7 @@ struct Case {
       case SizeDistribution::bidisperse:
         return "particles.radius.large";
       case SizeDistribution::discrete:
+      case SizeDistribution::list:
         return "particles.radius.radii";
       case SizeDistribution::grading:
         return "particles.radius.diameter_curve";
@@ -97,11 +98,11 @@ void check_truncation(const Case& scene) {
 
 void check_classes(const Case& scene) {
   const Radius& radius = scene.radius();
+  if (radius.radii.empty()) scene.refuse("particles.radius.radii", "is empty; give a radius at least");
   if (radius.shares.size() != radius.radii.size()) {
     scene.refuse("particles.radius.shares",
                  fmt::format("{} shares for {} radii; give one for each", radius.shares.size(), radius.radii.size()));
   }
-  if (radius.radii.empty()) scene.refuse("particles.radius.radii", "is empty; give a radius at least");
   for (std::size_t k = 1; k < radius.radii.size(); ++k) {
     if (radius.radii[k - 1] < radius.radii[k]) continue;
     scene.refuse("particles.radius.radii",
@@ -115,12 +116,12 @@ void check_grading(const Case& scene) {
     scene.refuse("particles.radius.diameter_curve",
                  "is missing; give points [diameter, percent passing], or diameter_curve_file");
   }
-  if (const std::string words = flaw(radius.diameter_curve); !words.empty()) {
-    scene.refuse("particles.radius.diameter_curve", words);
-  }
   if (radius.keep_percent[0] >= radius.keep_percent[1]) {
     scene.refuse("particles.radius.keep_percent",
                  fmt::format("{:g} is not below {:g}; exchange them", radius.keep_percent[0], radius.keep_percent[1]));
+  }
+  if (const std::string words = flaw(radius.diameter_curve, radius.keep_percent); !words.empty()) {
+    scene.refuse("particles.radius.diameter_curve", words);
   }
 }
 
@@ -136,6 +137,9 @@ void check_distribution(const Case& scene) {
                                radius.small, radius.large));
     case SizeDistribution::discrete:
       return check_classes(scene);
+    case SizeDistribution::list:
+      if (!radius.radii.empty()) return;
+      scene.refuse("particles.radius.radii", "is missing; give the radii one by one, or list_file");
     case SizeDistribution::grading:
       return check_grading(scene);
     default:
@@ -187,6 +191,7 @@ void check_fraction(const Case& scene) {
 void check_counts(const Case& scene) {
   constexpr double most_particles = 0x1p40, most_layers = 0x1p24;
   const Layers& layers = scene.in.layers;
+  if (insertion_alone(scene.in) || scene.in.particles.count > 0) return;
   const double settled = scene.plane() ? 0.85 : 0.6;
   const Radius& radius = scene.radius();
   const bool by_number = radius.weighting == Weighting::number;
@@ -238,8 +243,21 @@ void check_step(const Case& scene, const char* key, std::optional<double> step, 
   }
 }
 
+/// Nothing moves: what asks for motion is a mistake.
+void check_insertion_alone(const Case& scene) {
+  const Input& in = scene.in;
+  if (!insertion_alone(in)) return;
+  if (in.dynamics.relaxation.value_or(0.0) > 0.0) {
+    scene.refuse("dynamics.relaxation", "layers.duration = 0 is insertion alone, without a final stage; remove one");
+  }
+  if (in.start) {
+    scene.refuse("start", "layers.duration = 0 is insertion alone, into an empty container; remove one of them");
+  }
+}
+
 void check_time(const Case& scene) {
   const Input& in = scene.in;
+  if (insertion_alone(in)) return;
   check_step(scene, "dynamics.time_step", in.dynamics.time_step, "layers.duration", in.layers.duration);
   check_step(scene, "layers.time_step", in.layers.time_step, "layers.duration", in.layers.duration);
 }
@@ -331,6 +349,7 @@ void check(const Input& in, const Document& document) {
   check_fraction(scene);
   check_counts(scene);
   check_resolution(scene);
+  check_insertion_alone(scene);
   check_time(scene);
   check_stages(scene);
   check_features(scene);

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "input/units.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::input {
 namespace {
@@ -24,7 +24,7 @@ void check_size(const std::string& text, const std::string& file) {
     throw Error(ExitCode::bad_input, fmt::format("{}:{}: {}", file, line, words));
   };
   if (text.empty()) refuse(1, "the file is empty; see doc/input.md for a first scene");
-  if (text.size() > Document::longest_file) refuse(1, "the file is longer than 1 MiB; is it a scene?");
+  if (text.size() > Document::longest_file) refuse(1, "the file is longer than 4 MiB; is it a scene?");
   int dots = 0;
   char before = '\n';  // the last character that is not a blank
   bool blank = false;
@@ -127,6 +127,17 @@ void Document::set(const std::string& assignment) {
   *node = parse_value(std::string(text::trimmed(std::string_view(assignment).substr(equals + 1))), place);
 }
 
+bool Document::rename(std::string_view path, const std::string& name) {
+  Table* table = std::get_if<Table>(&root_.value);
+  while (table != nullptr) {
+    Entry* entry = find_entry(*table, next_name(path));
+    if (entry != nullptr && path.empty()) entry->name = name;
+    if (entry == nullptr || path.empty()) return entry != nullptr;
+    table = std::get_if<Table>(&entry->node.value);
+  }
+  return false;
+}
+
 const Node* Document::find(std::string_view path) const {
   const Node* node = &root_;
   while (!path.empty()) {
@@ -168,27 +179,11 @@ std::string describe(const Node& node) {
       return toml_string(text.size() <= 60 ? text : text.substr(0, 57) + "...");
     }
     std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
-    std::string operator()(double real) const { return number(real); }
+    std::string operator()(double real) const { return tables::number(real); }
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(const Date&) const { return "a date"; }
   } const words;
   return std::visit(words, node.value);
-}
-
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (code < 0x20 || code == 0x7f) {
-      out += fmt::format("\\u{:04x}", code);
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
 }
 
 void fail(std::string_view place, std::string_view path, std::string_view words) {

@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "tables/units.hpp"
+
 namespace packmpi::input {
 
 struct Entry;
@@ -28,13 +30,17 @@ struct Entry {
 /// The tree and the questions asked of it.
 class Document {
  public:
-  static constexpr std::size_t longest_file = std::size_t{1} << 20;  ///< bytes; a scene is a page of text
+  static constexpr std::size_t longest_file = std::size_t{4}
+                                              << 20;  ///< bytes; a scene is a page of text, or has a list of sizes
 
   /// Parses `text` as the file `file`. Throws Error(bad_input), one line, on anything that is not TOML.
   Document(const std::string& text, const std::string& file);
 
   /// Puts the value of "key.path=value" in place of what the file says. Throws Error(bad_input).
   void set(const std::string& assignment);
+
+  /// Gives the entry at "a.b" the name `name`, in place. False: there is none.
+  bool rename(std::string_view path, const std::string& name);
 
   [[nodiscard]] const Table& root() const { return std::get<Table>(root_.value); }
   /// The node at "a.b.c", or null.
@@ -52,8 +58,7 @@ class Document {
 /// The value for a message, on one line: "abc", 3, 0.5, a table, a list of 2.
 [[nodiscard]] std::string describe(const Node& node);
 
-/// `text` as a TOML basic string, on one line.
-[[nodiscard]] std::string toml_string(std::string_view text);
+using tables::toml_string;
 
 /// Throws Error(bad_input) "place: path: words".
 [[noreturn]] void fail(std::string_view place, std::string_view path, std::string_view words);

@@ -229,13 +229,14 @@ std::vector<PresetValue> preset(const Input& in) {
 }
 
 std::optional<std::string_view> preset_law(const Document& document, std::string_view path, const Input& in) {
+  if (insertion_alone(in)) return path == "jamming.gravity" ? std::optional("0.0") : std::nullopt;
   const bool named = document.find("fidelity") != nullptr && in.fidelity != "paper";
   return named && path == "contact.tangential" ? std::optional("\"mindlin\"") : std::nullopt;
 }
 
 void apply_preset(const Document& document, Input& in) {
   const Node* named = document.find("fidelity");
-  if (named == nullptr) return;
+  if (named == nullptr || insertion_alone(in)) return;
   if (in.fidelity != "paper" && !(in.jamming.gravity > 0.0)) {
     fail(named->place, "fidelity",
          fmt::format("\"{}\" measures times by the free fall through a layer, and there is no gravity; use \"paper\"",
@@ -254,6 +255,7 @@ void apply_preset(const Document& document, Input& in) {
 
 std::vector<std::string> preset_in_use(Input in) {
   std::vector<std::string> lines;
+  if (insertion_alone(in)) return lines;
   for (const PresetValue& entry : preset(in)) {
     const Key& key = *find_key(entry.path);
     Input other = in;

@@ -13,8 +13,9 @@
 namespace packmpi::input {
 
 enum class Boundary { wall, periodic };
-enum class SizeDistribution { equal, gaussian, uniform, lognormal, weibull, bidisperse, discrete, grading };
-enum class Weighting { number, mass };
+enum class SizeDistribution { equal, gaussian, uniform, lognormal, weibull, bidisperse, discrete, grading, list };
+enum class Weighting { number, mass, area };
+enum class ListOrder { random, file };
 enum class Interpolation { log, linear };
 enum class HeightRule { surface, highest };
 enum class RegionRule { open, container };
@@ -31,12 +32,12 @@ struct Container {
   std::vector<Boundary> boundary;  ///< one per lateral axis
 };
 
-/// Points [diameter in m, percent passing], ascending.
+/// Points [diameter in m, percent passing], ascending once they have been read.
 using Curve = std::vector<std::array<double, 2>>;
 
 struct Radius {
   SizeDistribution distribution = SizeDistribution::equal;
-  Weighting weighting = Weighting::number;           ///< what the distribution counts: particles, or their mass
+  Weighting weighting = Weighting::number;           ///< what the distribution counts: particles, their mass or area
   double value = 0.0;                                ///< [m] equal
   double mean = 0.0, sd = 0.0;                       ///< [m] gaussian
   double median = 0.0, log_sd = 0.0;                 ///< [m], [-] lognormal: sd of ln(radius)
@@ -44,30 +45,35 @@ struct Radius {
   double min = 0.0, max = 0.0;                       ///< [m] uniform; truncation of gaussian, lognormal, weibull
   double small = 0.0, large = 0.0;                   ///< [m] bidisperse
   double large_share = 0.0;                          ///< [-] bidisperse
-  std::vector<double> radii, shares;                 ///< [m], any unit: discrete
+  std::vector<double> radii, shares;                 ///< [m], any unit: discrete; radii alone: list
   Curve diameter_curve;                              ///< grading; of diameters, as sieves have them
   std::string diameter_curve_file;                   ///< CSV beside the scene; "" once it has been read
+  std::string list_file;                             ///< CSV beside the scene; "" once it has been read
+  ListOrder order = ListOrder::random;               ///< list: in which its radii are inserted
   Interpolation interpolation = Interpolation::log;  ///< grading: linear in log(diameter) or in the diameter
   std::array<double, 2> keep_percent{0.0, 100.0};    ///< grading: what lies outside is left out
+  bool diameters = false;                            ///< while reading: the scene gives diameters
 };
 
 struct Particles {
   double density = 0.0;         ///< [kg/m3]
   double youngs_modulus = 0.0;  ///< [Pa]
   double poisson_ratio = 0.0;   ///< [-]
+  std::int64_t count = 0;       ///< exactly so many; 0: as many as it takes
   Radius radius;
 };
 
 struct Layers {
   double thickness = 0.0;                ///< [m] h_0
   double fraction = 0.0;                 ///< [-] phi_0
-  double duration = 0.0;                 ///< [s] of dynamics a layer, at most
+  double duration = 0.0;                 ///< [s] of dynamics a layer, at most; 0: insertion alone
   std::optional<double> youngs_modulus;  ///< [Pa] while layers settle; none: "auto"
   std::optional<double> time_step;       ///< [s] while layers settle; none: "auto"
   HeightRule height = HeightRule::surface;
   RegionRule region = RegionRule::open;
   Vec3 velocity{};            ///< [m/s] at insertion
   Vec3 spin{};                ///< [rad/s] at insertion; 2D: only z
+  double gap = 0.0;           ///< [m] least distance of surfaces at insertion
   std::int64_t attempts = 0;  ///< trials a particle may have before RSA gives up
   std::int64_t maximum = 0;   ///< layers at most; 0: no limit but the program's own bound
 };
@@ -122,6 +128,12 @@ struct Rest {
   std::optional<double> wait = 0.0;  ///< [s] that the final stage goes on at most until it is; none: "auto"
 };
 
+struct Start {           ///< from a pack that is there
+  std::string pack;      ///< path from the scene's folder
+  std::string digest;    ///< of the pack, hexadecimal; "" until it has been looked at
+  double overlap = 0.0;  ///< [-] of a radius: deeper overlaps of its particles are refused
+};
+
 struct Parallel {
   Decomposition decomposition = Decomposition::slab;
 };
@@ -159,13 +171,18 @@ struct Input {
   Drag drag;
   std::optional<NearField> near_field;  ///< none: off
   Dynamics dynamics;
+  std::optional<Start> start;  ///< none: from nothing
   Rest rest;
   Parallel parallel;
   Ensemble ensemble;
   Checkpoint checkpoint;
   Output output;
   Petsc petsc;
-  std::string effective;  ///< the scene with every default filled in, as TOML; the provenance
+  std::vector<std::string> remarks;  ///< how files beside the scene were read, a line each
+  std::string effective;             ///< the scene with every default filled in, as TOML; the provenance
 };
+
+/// Particles are placed, and nothing moves: the layer is the whole container.
+[[nodiscard]] inline bool insertion_alone(const Input& in) { return in.layers.duration == 0.0; }
 
 }  // namespace packmpi::input

@@ -16,6 +16,7 @@ Slot sample(const Key& key) {
   thread_local Input any = [] {
     Input in;
     in.near_field.emplace();
+    in.start.emplace();
     return in;
   }();
   return key.slot(any);

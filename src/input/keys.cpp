@@ -99,7 +99,15 @@ constexpr Condition bounded{"distribution = \"gaussian\", \"uniform\", \"lognorm
                               return is(in, SizeDistribution::gaussian) || is(in, SizeDistribution::uniform) ||
                                      is(in, SizeDistribution::lognormal) || is(in, SizeDistribution::weibull);
                             }};
-constexpr Condition graded{"distributions other than \"equal\"", [](const Input& in) { return !equal.holds(in); }};
+constexpr Condition list{"distribution = \"list\"", [](const Input& in) { return is(in, SizeDistribution::list); }};
+constexpr Condition several{"distribution = \"discrete\" or \"list\"",
+                            [](const Input& in) { return discrete.holds(in) || list.holds(in); }};
+constexpr Condition graded{"distributions other than \"equal\" and \"list\"",
+                           [](const Input& in) { return !equal.holds(in) && !list.holds(in); }};
+constexpr Condition layered{"layers.duration above 0", [](const Input& in) { return !insertion_alone(in); }};
+constexpr Condition by_fraction{"layers.duration above 0 or scenes without particles.count",
+                                [](const Input& in) { return layered.holds(in) || in.particles.count == 0; }};
+constexpr Condition started{"[start] is present", [](const Input& in) { return in.start.has_value(); }};
 constexpr Condition mindlin{"tangential = \"mindlin\"",
                             [](const Input& in) { return in.contact.tangential == Tangential::mindlin; }};
 constexpr Condition sliding{"tangential = \"sliding\"", [](const Input& in) { return !mindlin.holds(in); }};
@@ -142,6 +150,8 @@ std::vector<Key> particle_keys() {
          "Young's modulus E. Softer particles take larger steps and overlap more: 7e-4 r at 1e8 Pa, 3e-3 r at 1e7."),
     real("particles.poisson_ratio", at(particles, &Particles::poisson_ratio), plain, Range{-1, 0.5, true, false}, mandatory,
          "Poisson's ratio nu."),
+    whole("particles.count", at(particles, &Particles::count), between(0, 0x1p40), "0",
+          "Exactly so many particles: the last layer is cut to size, and the height that they come to is no target. 0: as many as the height takes."),
   };
 }
 
@@ -151,7 +161,7 @@ std::vector<Key> radius_keys() {
     word("particles.radius.distribution", at_radius(&Radius::distribution), mandatory,
          "Which radii there are. They are drawn before placing, so that insertion does not distort them."),
     when(graded, word("particles.radius.weighting", at_radius(&Radius::weighting), mandatory,
-         "What the distribution counts: \"number\", the share of particles; \"mass\", the share of mass, as sieves do.")),
+         "What the distribution counts: \"number\", the share of particles; \"mass\", the share of mass, as sieves do; \"area\", that of discs in a section.")),
     when(equal, real("particles.radius.value", at_radius(&Radius::value), length, above(0), mandatory,
          "Radius of every particle.")),
     when(gaussian, real("particles.radius.mean", at_radius(&Radius::mean), length, above(0), mandatory,
@@ -176,14 +186,18 @@ std::vector<Key> radius_keys() {
          "Radius of the large particles.")),
     when(bidisperse, real("particles.radius.large_share", at_radius(&Radius::large_share), ratio, inside(0, 1), mandatory,
          "Share of the large particles, by the weighting.")),
-    when(discrete, reals("particles.radius.radii", at_radius(&Radius::radii), Count::any, length, above(0), mandatory,
-         "The radii there are, ascending.")),
+    when(several, reals("particles.radius.radii", at_radius(&Radius::radii), Count::any, length, above(0), "[]",
+         "The radii there are: of classes, ascending; of a list, in any order, each used once.")),
+    when(list, word("particles.radius.list_file", at_radius(&Radius::list_file), R"("")",
+         "The list as a CSV file in the scene's folder, one size a line; its first line is `diameter_mm` or `radius_mm`.")),
+    when(list, word("particles.radius.order", at_radius(&Radius::order), R"("random")",
+         "Order in which the list is inserted, layer by layer: shuffled by the seed, or as in the file. Particle k of the pack is number k of this order.")),
     when(discrete, reals("particles.radius.shares", at_radius(&Radius::shares), Count::any, plain, above(0), mandatory,
          "The share of each radius, by the weighting; only their ratios count.")),
     when(grading, reals("particles.radius.diameter_curve", at_radius(&Radius::diameter_curve), Count::any, length, above(0), "[]",
-         "The grading curve: DIAMETERS (sieve openings), each with the percentage that passes, from 0 to 100.")),
+         "The grading curve: DIAMETERS (sieve openings), each with the percentage that passes, from 0 to 100, in any order.")),
     when(grading, word("particles.radius.diameter_curve_file", at_radius(&Radius::diameter_curve_file), R"("")",
-         "The same as a CSV file in the scene's folder; its first line is `diameter_mm,percent_passing`.")),
+         "The same as a sieve table in the scene's folder, a CSV file: passing or retained, see doc/input.md, \"Sieve tables\".")),
     when(grading, word("particles.radius.interpolation", at_radius(&Radius::interpolation), R"("log")",
          "Between the points, the percentage is linear in the logarithm of the diameter, or in the diameter.")),
     when(grading, reals("particles.radius.keep_percent", at_radius(&Radius::keep_percent), Count::two, plain, between(0, 100), "[0.0, 100.0]",
@@ -194,12 +208,14 @@ std::vector<Key> radius_keys() {
 std::vector<Key> layer_keys() {
   const auto layers = &Input::layers;
   return {
-    real("layers.thickness", at(layers, &Layers::thickness), length, above(0), mandatory,
-         "Height h_0 of the region above the bed that a layer is inserted into; the paper takes 0.2 H_d."),
-    real("layers.fraction", at(layers, &Layers::fraction), ratio, inside(0, 1), mandatory,
-         "Solid fraction phi_0 of that region after insertion. Random insertion ends at 0.547 in 2D, 0.384 in 3D."),
-    real("layers.duration", at(layers, &Layers::duration), time, above(0), "1.0",
-         "Simulated time of dynamics after each layer, at most."),
+    real("layers.duration", at(layers, &Layers::duration), time, at_least(0), "1.0",
+         "Simulated time of dynamics after each layer, at most. 0: insertion alone; the whole container is one layer, nothing moves, and no time step is asked for."),
+    when(layered, real("layers.thickness", at(layers, &Layers::thickness), length, above(0), mandatory,
+         "Height h_0 of the region above the bed that a layer is inserted into; the paper takes 0.2 H_d.")),
+    when(by_fraction, real("layers.fraction", at(layers, &Layers::fraction), ratio, inside(0, 1), mandatory,
+         "Solid fraction phi_0 of that region after insertion. Random insertion of equal radii ends at 0.547 in 2D, 0.384 in 3D; of graded ones, later.")),
+    real("layers.gap", at(layers, &Layers::gap), length, at_least(0), "0.0",
+         "Least distance between the surfaces of particles at insertion."),
     real("layers.youngs_modulus", at(layers, &Layers::youngs_modulus), pressure, above(0), "auto",
          "Modulus while layers settle; softer takes larger steps, and hardens in the final relaxation. \"auto\": that of the particles."),
     real("layers.time_step", at(layers, &Layers::time_step), time, above(0), "auto",
@@ -296,6 +312,21 @@ std::vector<Key> dynamics_keys() {
   };
 }
 
+Place at_start(std::string Start::*member) {
+  return [=](Input& in) -> Slot { return &((*in.start).*member); };
+}
+
+std::vector<Key> start_keys() {
+  return {
+    when(started, word("start.pack", at_start(&Start::pack), mandatory,
+         "A pack (NAME.hdf) to go on from, its path from the scene's folder: its particles are there before the first layer. See doc/going_on.md.")),
+    when(started, word("start.digest", at_start(&Start::digest), R"("")",
+         "Digest of that pack; another one is refused. A run fills it in.")),
+    when(started, real("start.overlap_limit", [](Input& in) -> Slot { return &in.start->overlap; }, ratio, Range{0, 0.5, true, false}, "0.05",
+         "Deepest overlap in it, over the smaller radius, that is taken: the final stage relaxes it. Deeper ones are refused.")),
+  };
+}
+
 std::vector<Key> rest_keys() {
   const auto rest = &Input::rest;
   return {
@@ -336,8 +367,9 @@ std::vector<Key> program_keys() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all;
-    for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(),
-                             force_keys(), near_field_keys(), dynamics_keys(), rest_keys(), program_keys()}) {
+    for (const auto& part :
+         {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(), force_keys(),
+          near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

@@ -13,15 +13,18 @@
 #include <vector>
 
 #include "input/input.hpp"
-#include "input/units.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::input {
+
+using tables::acceleration, tables::angular_velocity, tables::density, tables::drag_factor, tables::length,
+    tables::plain, tables::pressure, tables::Quantity, tables::ratio, tables::time, tables::velocity;
 
 /// Where a key's value goes. Its type decides what the file may say.
 using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
                           Vec3*, std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*,
-                          SizeDistribution*, Weighting*, Interpolation*, HeightRule*, RegionRule*, FrictionVelocity*,
-                          Tangential*, Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
+                          SizeDistribution*, Weighting*, ListOrder*, Interpolation*, HeightRule*, RegionRule*,
+                          FrictionVelocity*, Tangential*, Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {

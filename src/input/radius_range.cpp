@@ -1,5 +1,7 @@
 #include "input/radius_range.hpp"
 
+#include <algorithm>
+
 #include "input/grading.hpp"
 
 namespace packmpi::input {
@@ -12,6 +14,10 @@ RadiusRange radius_range(const Radius& radius) {
       return {radius.small, radius.large};
     case SizeDistribution::discrete:
       return {radius.radii.front(), radius.radii.back()};
+    case SizeDistribution::list: {
+      const auto [smallest, largest] = std::ranges::minmax(radius.radii);
+      return {smallest, largest};
+    }
     case SizeDistribution::grading: {
       const Curve curve = kept_curve(radius);
       return {0.5 * curve.front()[0], 0.5 * curve.back()[0]};

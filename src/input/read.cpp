@@ -12,6 +12,7 @@
 #include "input/checks.hpp"
 #include "input/document.hpp"
 #include "input/fidelity.hpp"
+#include "input/grading.hpp"
 #include "input/keys.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
@@ -125,19 +126,6 @@ void read_key(const Key& key, const Document& document, Input& in) {
   }
 }
 
-/// The scene with every default filled in. Reading it back gives the same scene and the same text.
-std::string effective(Input in) {
-  std::string text, open;
-  for (const Key& key : keys()) {
-    if (!key.applies(in)) continue;
-    const auto [table, name] = split_path(key.path);
-    if (table != open) text += fmt::format("\n[{}]\n", table);
-    open = table;
-    text += fmt::format("{} = {}\n", name, written(key, in));
-  }
-  return text;
-}
-
 std::string file_text(const std::string& path, std::string_view what) {
   const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
   const RegularFile file(path);
@@ -145,8 +133,37 @@ std::string file_text(const std::string& path, std::string_view what) {
   if (!flaw.empty()) refuse(flaw + (flaw.starts_with("cannot") ? "; check the path" : fmt::format("; give {}", what)));
   const std::optional<std::string> text = file.read(0, Document::longest_file + 1);
   if (!text) refuse("cannot be read to its end; check the file system");
-  if (text->size() > Document::longest_file) refuse(fmt::format("is longer than 1 MiB; is it {}?", what));
+  if (text->size() > Document::longest_file) refuse(fmt::format("is longer than 4 MiB; is it {}?", what));
   return *text;
+}
+
+/// A scene may give diameters, [particles.diameter], in place of radii.
+constexpr std::string_view radius_table = "particles.radius", diameter_table = "particles.diameter";
+
+/// Diameters under the names of radii; the values are halved when they are stored. False: the scene gives radii.
+bool rename_diameters(Document& document) {
+  const Node* diameter = document.find(diameter_table);
+  if (diameter == nullptr) return false;
+  if (document.find(radius_table) != nullptr) {
+    fail(diameter->place, diameter_table, "there is particles.radius, too; remove one of them");
+  }
+  if (const Node* radii = document.find("particles.diameter.radii")) {
+    fail(radii->place, "particles.diameter.radii", "is here called diameters; rename it");
+  }
+  document.rename("particles.diameter.diameters", "radii");
+  return document.rename(diameter_table, "radius");
+}
+
+/// What is said of radii, in the names of the scene.
+std::string in_diameters(std::string words) {
+  for (const auto& [ours, theirs] :
+       {std::pair(std::string("particles.radius.radii"), std::string("particles.diameter.diameters")),
+        std::pair(std::string(radius_table), std::string(diameter_table))}) {
+    for (std::size_t at = words.find(ours); at != std::string::npos; at = words.find(ours, at + theirs.size())) {
+      words.replace(at, ours.size(), theirs);
+    }
+  }
+  return words;
 }
 
 Document with_changes(const std::string& text, const std::string& path, const Overrides& overrides) {
@@ -156,30 +173,58 @@ Document with_changes(const std::string& text, const std::string& path, const Ov
 }
 
 constexpr std::string_view curve_file_key = "particles.radius.diameter_curve_file";
+constexpr std::string_view list_file_key = "particles.radius.list_file";
 
 // A scene may be a stranger's: it names files beside it only.
-void check_curve_name(const Document& document, const std::string& name) {
+void check_curve_name(const Document& document, std::string_view key, const std::string& name) {
   const std::filesystem::path path(name);
   const bool leaves = path.is_absolute() || std::ranges::find(path, "..") != path.end();
   if (!leaves) return;
-  fail(document.place(curve_file_key), curve_file_key,
-       fmt::format("is {}; a curve lies in the scene's folder or below it: give a path from there, without \"..\"",
-                   toml_string(name)));
+  fail(document.place(key), key,
+       fmt::format("is {}; a {} lies in the scene's folder or below it: give a path from there, without \"..\"",
+                   toml_string(name), key == curve_file_key ? "curve" : "list"));
 }
 
-/// Puts the CSV file's points where the scene's own would stand.
-void take_curve(const Document& document, const std::optional<CurveFile>& file, Radius& radius) {
+/// Puts the CSV file's points where the scene's own would stand, the finest first.
+void take_curve(const Document& document, const std::optional<CurveFile>& file, Input& in) {
+  Radius& radius = in.particles.radius;
+  std::ranges::stable_sort(radius.diameter_curve, {}, [](const auto& point) { return point[0]; });
   if (radius.diameter_curve_file.empty()) return;
-  check_curve_name(document, radius.diameter_curve_file);
+  check_curve_name(document, curve_file_key, radius.diameter_curve_file);
   if (!radius.diameter_curve.empty()) {
     fail(document.place(curve_file_key), curve_file_key, "there is a diameter_curve, too; remove one of them");
   }
   if (!file) fail(document.place(curve_file_key), curve_file_key, "no file comes with this text; give diameter_curve");
-  radius.diameter_curve = read_curve(*file);
-  if (const std::string words = flaw(radius.diameter_curve); !words.empty()) {
+  tables::SieveTable table = tables::read_sieve_table(*file);
+  radius.diameter_curve = std::move(table.curve);
+  in.remarks.push_back(std::move(table.reading));
+  if (const std::string words = flaw(radius.diameter_curve, radius.keep_percent); !words.empty()) {
     throw Error(ExitCode::bad_input, fmt::format("{}: the curve {}", file->path, words));
   }
   radius.diameter_curve_file.clear();
+}
+
+/// Puts the CSV file's radii where the scene's own would stand. The list is the number of particles.
+void take_list(const Document& document, const std::optional<CurveFile>& file, Input& in) {
+  Radius& radius = in.particles.radius;
+  if (radius.distribution != SizeDistribution::list) return;
+  if (!radius.list_file.empty()) {
+    check_curve_name(document, list_file_key, radius.list_file);
+    if (!radius.radii.empty()) {
+      fail(document.place(list_file_key), list_file_key, "there are radii, too; remove one of them");
+    }
+    if (!file) fail(document.place(list_file_key), list_file_key, "no file comes with this text; give radii");
+    tables::SizeList list = tables::read_size_list(*file);
+    radius.radii = std::move(list.radii);
+    in.remarks.push_back(std::move(list.reading));
+    radius.list_file.clear();
+  }
+  const auto listed = std::ssize(radius.radii);
+  if (in.particles.count != 0 && in.particles.count != listed) {
+    fail(document.place("particles.count"), "particles.count",
+         fmt::format("is {}, and the list has {} sizes, each for one particle; remove it", in.particles.count, listed));
+  }
+  in.particles.count = listed;
 }
 
 /// The damping ratio that a restitution stands for. A scene that was written with every default filled in has both.
@@ -194,34 +239,69 @@ void take_restitution(const Document& document, Contact& contact) {
   contact.damping_ratio = damping;
 }
 
+void read_document(const Document& document, const std::optional<CurveFile>& curve, Input& in) {
+  refuse_unknown(document.root(), "");
+  if (document.find("near_field") != nullptr) in.near_field.emplace();
+  if (document.find("start") != nullptr) in.start.emplace();
+  for (const Key& key : keys()) read_key(key, document, in);
+  if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
+  take_curve(document, curve, in);
+  take_list(document, curve, in);
+  take_restitution(document, in.contact);
+  try {
+    check_radii(in, document);
+    apply_preset(document, in);
+    check(in, document);
+  } catch (const Error& error) {
+    const std::string words = error.what();
+    if (!in.particles.radius.diameters || words.find(radius_table) == std::string::npos) throw;
+    throw Error(error.code(), words + " (its lengths are radii)");
+  }
+}
+
 }  // namespace
 
+std::string effective_of(Input in) {
+  std::string text, open;
+  for (const Key& key : keys()) {
+    if (!key.applies(in)) continue;
+    const auto [table, name] = split_path(key.path);
+    if (table != open) text += fmt::format("\n[{}]\n", table);
+    open = table;
+    text += fmt::format("{} = {}\n", name, written(key, in));
+  }
+  return text;
+}
+
 std::optional<CurveFile> named_curve(const std::string& text, const std::string& path, const Overrides& overrides) {
-  const Document document = with_changes(text, path, overrides);
-  const Node* node = document.find(curve_file_key);
+  Document document = with_changes(text, path, overrides);
+  rename_diameters(document);
+  const std::string_view key = document.find(list_file_key) != nullptr ? list_file_key : curve_file_key;
+  const Node* node = document.find(key);
   const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
-  const bool both = document.find("particles.radius.diameter_curve") != nullptr;  // parse() refuses that
+  const bool both = document.find(key == curve_file_key ? "particles.radius.diameter_curve"
+                                                        : "particles.radius.radii") != nullptr;  // parse() refuses that
   if (name == nullptr || name->empty() || both) return std::nullopt;
-  check_curve_name(document, *name);
+  check_curve_name(document, key, *name);
   const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
   return CurveFile{file, file_text(file, "a CSV file")};
 }
 
 Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
             const std::optional<CurveFile>& curve) {
-  const Document document = with_changes(text, path, overrides);
-  refuse_unknown(document.root(), "");
+  Document document = with_changes(text, path, overrides);
   Input in;
   in.file = path;
   in.name = std::filesystem::path(path).stem().string();
-  if (document.find("near_field") != nullptr) in.near_field.emplace();
-  for (const Key& key : keys()) read_key(key, document, in);
-  take_curve(document, curve, in.particles.radius);
-  take_restitution(document, in.contact);
-  check_radii(in, document);
-  apply_preset(document, in);
-  check(in, document);
-  in.effective = effective(in);
+  in.particles.radius.diameters = rename_diameters(document);
+  try {
+    read_document(document, curve, in);
+  } catch (const Error& error) {
+    if (!in.particles.radius.diameters) throw;
+    throw Error(error.code(), in_diameters(error.what()));
+  }
+  in.particles.radius.diameters = false;
+  in.effective = effective_of(in);
   return in;
 }
 

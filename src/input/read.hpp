@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "comm/comm.hpp"
-#include "input/grading.hpp"
 #include "input/input.hpp"
+#include "tables/sieve_table.hpp"
 
 namespace packmpi::input {
+
+using tables::CurveFile;
 
 /// What the command line changes of the file.
 struct Overrides {
@@ -25,10 +27,14 @@ struct Overrides {
 [[nodiscard]] Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
                           const std::optional<CurveFile>& curve = {});
 
-/// The CSV file that a scene names (particles.radius.diameter_curve_file), read from the scene's folder; none: it names
-/// none. Local. Throws Error(bad_input).
+/// The CSV file that a scene names (particles.radius.diameter_curve_file or list_file), read from the scene's folder;
+/// none: it names none. Local. Throws Error(bad_input).
 [[nodiscard]] std::optional<CurveFile> named_curve(const std::string& text, const std::string& path,
                                                    const Overrides& overrides);
+
+/// The scene with every default filled in, as TOML, of an Input that was changed. Reading it gives the same scene and
+/// the same text. Local.
+[[nodiscard]] std::string effective_of(Input in);
 
 /// doc/input.md's key tables, from the table the reader uses, as Markdown.
 [[nodiscard]] std::string reference();

@@ -72,7 +72,7 @@ std::string starter(int dimension) {
   for (const Key& key : keys()) {
     const std::string_view table = split_path(key.path).first;
     if (table != open) {  // a table that is there only if it is named stays away
-      const bool absent = !in.near_field && table == "near_field";
+      const bool absent = (!in.near_field && table == "near_field") || (!in.start && table == "start");
       text += fmt::format("\n{}[{}]\n", absent ? "# " : "", table);
     }
     open = table;

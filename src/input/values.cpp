@@ -8,9 +8,12 @@
 
 #include "base/text.hpp"
 #include "input/words.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::input {
 namespace {
+
+using tables::number, tables::parse_scalar, tables::Scalar;
 
 /// One value on its way to its member: a key's own, or an entry of its list.
 struct Arrival {
@@ -33,6 +36,12 @@ double ranged(const Arrival& arrival, double value) {
   return value;
 }
 
+/// Lengths of the size distribution are radii in the program; the scene may give diameters.
+bool is_diameter(const Arrival& arrival) {
+  return arrival.in.particles.radius.diameters && arrival.key.path.starts_with("particles.radius.") &&
+         arrival.key.quantity == &length && arrival.key.path != "particles.radius.diameter_curve";
+}
+
 void assign(const Arrival& arrival, double& to) {
   const auto& value = arrival.node.value;
   if (const auto* real = std::get_if<double>(&value)) {
@@ -46,6 +55,7 @@ void assign(const Arrival& arrival, double& to) {
   } else {
     arrival.want(wanted(arrival.key));
   }
+  if (is_diameter(arrival)) to *= 0.5;
 }
 
 void assign(const Arrival& arrival, std::optional<double>& to) {

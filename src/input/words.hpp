@@ -13,10 +13,12 @@ inline constexpr std::array<std::string_view, 0> words_of{};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
 template <>
-inline constexpr std::array<std::string_view, 8> words_of<SizeDistribution>{
-    "equal", "gaussian", "uniform", "lognormal", "weibull", "bidisperse", "discrete", "grading"};
+inline constexpr std::array<std::string_view, 9> words_of<SizeDistribution>{
+    "equal", "gaussian", "uniform", "lognormal", "weibull", "bidisperse", "discrete", "grading", "list"};
 template <>
-inline constexpr std::array<std::string_view, 2> words_of<Weighting>{"number", "mass"};
+inline constexpr std::array<std::string_view, 3> words_of<Weighting>{"number", "mass", "area"};
+template <>
+inline constexpr std::array<std::string_view, 2> words_of<ListOrder>{"random", "file"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Interpolation>{"log", "linear"};
 template <>

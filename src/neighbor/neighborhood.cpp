@@ -26,7 +26,7 @@ constexpr double highest = 1000.0;
 // higher, which also keeps their number in a LocalIndex.
 void set_levels(Cells& cells, double top, const scene::Scene& scene, int columns, LocalIndex owned) {
   constexpr double always = 0x1p22, a_particle = 64.0;
-  const double most = static_cast<double>(scene::most_layers(scene.in) + 1) * scene.in.layers.thickness;
+  const double most = static_cast<double>(scene::most_layers(scene) + 1) * scene.in.layers.thickness;
   const double height = std::max(std::min(top, most) - cells.bottom, 0.0);
   const double affordable =
       std::min(std::max(always, a_particle * owned), double{std::numeric_limits<LocalIndex>::max() - 1});

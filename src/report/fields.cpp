@@ -18,15 +18,17 @@ std::vector<double> lengths(const RunRecord& r) { return {r.size.begin(), r.size
 }  // namespace
 
 std::vector<disk::Field> target_fields(const RunRecord& r) {
-  return {{"name", "", r.name},
-          {"dimension", "", std::int64_t{r.dimension}},
-          {"size", "m", lengths(r)},
-          {"target_height", "m", r.target_height},
-          {"target_fraction", "-", r.target_fraction},
-          {"target_mean_radius", "m", r.target_mean_radius},
-          {"target_sd_radius", "m", r.target_sd_radius},
-          {"target_min_radius", "m", r.target_min_radius},
-          {"target_max_radius", "m", r.target_max_radius}};
+  std::vector<disk::Field> fields{{"name", "", r.name},
+                                  {"dimension", "", std::int64_t{r.dimension}},
+                                  {"size", "m", lengths(r)},
+                                  {"target_height", "m", r.target_height},
+                                  {"target_fraction", "-", r.target_fraction},
+                                  {"target_mean_radius", "m", r.target_mean_radius},
+                                  {"target_sd_radius", "m", r.target_sd_radius},
+                                  {"target_min_radius", "m", r.target_min_radius},
+                                  {"target_max_radius", "m", r.target_max_radius}};
+  if (r.target_particles > 0) fields.emplace_back("target_particles", "", r.target_particles);
+  return fields;
 }
 
 std::vector<disk::Field> achieved_fields(const RunRecord& r) {
@@ -75,21 +77,23 @@ std::vector<disk::Field> audit_fields(const Audit& a) {
 }
 
 std::vector<disk::Field> provenance_fields(const RunRecord& r) {
-  return {{"version", "", r.version},
-          {"git", "", r.git},
-          {"compiler", "", r.compiler},
-          {"architecture", "", r.architecture},
-          {"scene_file", "", r.scene_file},
-          {"effective_input", "", r.effective_input},
-          {"petsc_options", "", r.petsc_options},
-          {"seed", "", r.seed},
-          {"ranks", "", std::int64_t{r.ranks}},
-          {"decomposition", "", r.decomposition},
-          {"wall_seconds", "s", r.wall_seconds},
-          {"series_rows", "", r.series_rows},
-          {"series_rows_in_file", "", r.series_rows_in_file},
-          {"particle_steps_per_second", "1/s", r.particle_steps_per_second},
-          {"bytes_per_particle", "", r.bytes_per_particle}};
+  std::vector<disk::Field> fields{{"version", "", r.version},
+                                  {"git", "", r.git},
+                                  {"compiler", "", r.compiler},
+                                  {"architecture", "", r.architecture},
+                                  {"scene_file", "", r.scene_file},
+                                  {"effective_input", "", r.effective_input},
+                                  {"petsc_options", "", r.petsc_options},
+                                  {"seed", "", r.seed},
+                                  {"ranks", "", std::int64_t{r.ranks}},
+                                  {"decomposition", "", r.decomposition},
+                                  {"wall_seconds", "s", r.wall_seconds},
+                                  {"series_rows", "", r.series_rows},
+                                  {"series_rows_in_file", "", r.series_rows_in_file},
+                                  {"particle_steps_per_second", "1/s", r.particle_steps_per_second},
+                                  {"bytes_per_particle", "", r.bytes_per_particle}};
+  if (!r.start.empty()) fields.emplace_back("start", "", r.start);
+  return fields;
 }
 
 std::vector<LayerColumn> layer_columns(const std::vector<LayerRow>& layers) {

@@ -30,7 +30,7 @@ struct LayerRow {
   double kinetic_per_mgd = 0.0;  ///< mean kinetic energy / (m g d) of a mean particle at the end of the layer
   double max_overlap = 0.0;      ///< largest overlap / smaller radius
   double coordination = 0.0;     ///< mean touching particles
-  std::string stop_reason;       ///< "duration", "settled"
+  std::string stop_reason;       ///< "duration", "settled", "inserted", "taken over"
 };
 
 /// What NAME.steps.csv holds, so that a run that goes on knows whether the series is whole.
@@ -77,9 +77,12 @@ struct RunRecord {
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
-  Vec3 size{};                   ///< [m] container
-  double target_height = 0.0;    ///< [m] H_d
-  double target_fraction = 0.0;  ///< phi_0 of each insertion
+  Vec3 size{};                        ///< [m] container
+  double target_height = 0.0;         ///< [m] H_d
+  double target_fraction = 0.0;       ///< phi_0 of each insertion
+  std::int64_t target_particles = 0;  ///< 0: as many as the height takes
+  bool insertion_alone = false;       ///< target_fraction is that of the container, and the height no target
+  std::string start;                  ///< what was taken over from another pack, and what not; "": there was none
   double target_mean_radius = 0.0, target_sd_radius = 0.0, target_min_radius = 0.0, target_max_radius = 0.0;  ///< [m]
   // achieved (*)
   std::int64_t particles = 0;
@@ -101,7 +104,7 @@ struct RunRecord {
   std::int64_t relaxations = 0;           ///< final stages, in which all particles move; more than one if the bed sank
   std::int64_t relaxation_steps = 0;      ///< of all of them, part of steps
   double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
-  bool reached = false;                   ///< target height reached
+  bool reached = false;                   ///< target height reached, or the number of particles
   std::string stop_reason;
   bool targets_met = false;  ///< nothing is in `missed`
   std::vector<LayerRow> layers;

@@ -26,7 +26,8 @@ std::string limit_words(const Criterion& c) {
 }
 
 void list_density(Buffer& out, const RunRecord& r) {
-  line(out, "solid fraction below the target height, phi", "", number(r.phi));
+  const bool asked = r.insertion_alone && r.target_particles == 0;
+  line(out, "solid fraction below the target height, phi", asked ? number(r.target_fraction) : "", number(r.phi));
   line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
   line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
   line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
@@ -38,8 +39,9 @@ void list_density(Buffer& out, const RunRecord& r) {
 void compare(Buffer& out, const RunRecord& r) {
   fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
   line(out, "quantity", "target", "achieved");
-  line(out, "particles", "", number(r.particles));
-  line(out, "height [m]", number(r.target_height), number(r.height));
+  line(out, "particles", r.target_particles > 0 ? number(r.target_particles) : "", number(r.particles));
+  const bool by_height = r.target_particles == 0 && !r.insertion_alone;
+  line(out, "height [m]", by_height ? number(r.target_height) : "", number(r.height));
   line(out, "highest top [m]", "", number(r.top));
   list_density(out, r);
   line(out, "compaction rate left, d phi_bulk / dt [1/s]", "", number(r.compaction_rate));

@@ -11,7 +11,7 @@ namespace packmpi::rsa {
 /// The columns of this rank that touch columns of others. Memory: O(border columns). Local.
 class Border {
  public:
-  /// `largest` is the largest radius [m].
+  /// `largest` is the largest radius, and a gap that spheres keep [m].
   Border(const scene::Ownership& ownership, Rank mine, double largest);
 
   /// The ranks that own a column which a sphere overlapping this one may have its centre in; each once, ascending. The

@@ -24,7 +24,7 @@ CellGrid::CellGrid(const scene::Scene& scene, const scene::Ownership& ownership,
                    std::int64_t asked, double diameter)
     : lateral_(scene.container.lateral_axes()) {
   const double width = cell_width(scene, region, asked, diameter * (1.0 + slack));
-  const double margin = 2.0 * scene.sizes.largest() * (1.0 + slack);
+  const double margin = (2.0 * scene.sizes.largest() + scene.in.layers.gap) * (1.0 + slack);
   for (int axis = 0; axis < lateral_; ++axis) {
     axes_[static_cast<std::size_t>(axis)] =
         scene::lateral_axis(ownership, static_cast<std::size_t>(axis), width, margin);
@@ -40,7 +40,7 @@ CellGrids::CellGrids(const scene::Scene& scene, const scene::Ownership& ownershi
   const int classes = wide_classes(scene.sizes) ? size_classes : 1;
   for (int k = 0; k < classes; k += classes_a_level) {
     largest_.push_back(class_bound(scene.sizes, k));
-    grids_.emplace_back(scene, ownership, region, asked, 2.0 * largest_.back());
+    grids_.emplace_back(scene, ownership, region, asked, 2.0 * largest_.back() + scene.in.layers.gap);
   }
 }
 

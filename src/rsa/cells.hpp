@@ -13,8 +13,8 @@
 namespace packmpi::rsa {
 
 /// The cells of a layer that can hold a sphere of this rank's columns or one that overlaps it. Cells are at least
-/// `diameter` wide: the spheres not wider than that which overlap one not wider either are in its cell or one of the
-/// cells around it. Local; O(columns).
+/// `diameter` wide, a gap included: the spheres not wider than that which overlap one not wider either are in its cell
+/// or one of the cells around it. Local; O(columns).
 class CellGrid {
  public:
   /// `asked` particles in the whole layer; cells are kept to a few a particle.

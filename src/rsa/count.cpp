@@ -24,8 +24,11 @@ std::int64_t count_of_equals(double target, double volume) {
 // Adds up volumes as integers, so that the sum does not depend on how the particles are dealt out.
 class Tally {
  public:
-  Tally(const scene::Scene& scene, std::uint32_t layer, double target)
-      : scene_(&scene), layer_(layer), quanta_(std::scalbn(1.0, 55 - std::ilogb(target))), target_(to_quanta(target)) {}
+  Tally(const scene::Scene& scene, const LayerRegion& region, double target)
+      : scene_(&scene),
+        region_(region),
+        quanta_(std::scalbn(1.0, 55 - std::ilogb(target))),
+        target_(to_quanta(target)) {}
 
   // Goes through [begin, end) of this rank and the blocks of the ranks above it. Collective. The count at which the
   // target is reached, or `none`; then the blocks have been added.
@@ -34,7 +37,7 @@ class Tally {
     volumes.reserve(static_cast<std::size_t>(end - begin));
     std::int64_t mine = 0;
     for (std::int64_t k = begin; k < end; ++k) {
-      const double radius = scene_->sizes.draw(layer_, static_cast<std::uint64_t>(k));
+      const double radius = scene_->sizes.draw(region_.layer, static_cast<std::uint64_t>(k), region_.first_id);
       volumes.push_back(to_quanta(geometry::volume(scene_->container.dimension, radius)));
       mine += volumes.back();
     }
@@ -53,22 +56,20 @@ class Tally {
   [[nodiscard]] std::int64_t to_quanta(double volume) const { return std::llrint(volume * quanta_); }
 
   const scene::Scene* scene_;
-  std::uint32_t layer_;
+  LayerRegion region_;
   double quanta_;  // a unit of volume, in quanta; the target is 2^55 to 2^56 of them
   std::int64_t target_;
   std::int64_t sum_ = 0;
 };
 
-}  // namespace
-
-std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
+std::int64_t needed_for_fraction(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
   const double target = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
   const int power = scene.container.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
   if (!(target > 0.0) || !(mean > 0.0))
     comm::fail_together(comm, ExitCode::bad_input, "layers: fraction, thickness and radii must be positive");
   if (scene.sizes.equal()) return count_of_equals(target, geometry::volume(power, scene.sizes.largest()));
-  Tally tally(scene, region.layer, target);
+  Tally tally(scene, region, target);
   std::int64_t done = 0;
   for (int block = 0; block < most_blocks; ++block) {
     const std::int64_t each = static_cast<std::int64_t>(tally.missing() / mean / comm.size()) + 1;
@@ -78,6 +79,15 @@ std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene,
     done += each * comm.size();
   }
   throw std::logic_error("rsa: the particles' volume does not grow");
+}
+
+}  // namespace
+
+std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
+  const std::int64_t count = scene.in.particles.count;
+  if (count > 0 && insertion_alone(scene.in)) return count;
+  const std::int64_t needed = needed_for_fraction(comm, scene, region);
+  return count > 0 ? std::min(needed, count - region.first_id) : needed;
 }
 
 }  // namespace packmpi::rsa

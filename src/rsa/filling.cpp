@@ -14,15 +14,15 @@ Filling::Filling(const comm::Comm& comm, const scene::Scene& scene, const scene:
       region_(region),
       sampler_(scene, ownership, region),
       grid_(scene, ownership, region, asked),
-      border_(ownership, comm.rank(), scene.sizes.largest()),
-      placed_(grid_, Metric(scene.container)),
-      conflicts_(comm, grid_, Metric(scene.container), border_, sampler_, placed_) {
+      border_(ownership, comm.rank(), scene.sizes.largest() + scene.in.layers.gap),
+      placed_(grid_, Metric(scene.container, scene.in.layers.gap)),
+      conflicts_(comm, grid_, Metric(scene.container, scene.in.layers.gap), border_, sampler_, placed_) {
   const auto bound = [&](std::int64_t rank) {
     return asked / comm.size() * rank + std::min(rank, asked % comm.size());
   };
   for (std::int64_t k = bound(comm.rank()); k < bound(comm.rank() + 1); ++k) {
     const auto particle = static_cast<std::uint64_t>(k);
-    const double radius = scene.sizes.draw(region.layer, particle);
+    const double radius = scene.sizes.draw(region.layer, particle, region.first_id);
     share_[static_cast<std::size_t>(size_class(scene.sizes, radius))].push_back({particle, radius});
   }
 }

@@ -42,6 +42,16 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
   return std::nullopt;
 }
 
+std::string advice(const scene::Scene& scene, bool early) {
+  const bool alone = insertion_alone(scene.in);
+  const char* what = alone && scene.in.particles.count > 0 ? "particles.count" : "layers.fraction";
+  const char* room = alone ? "container.size" : "layers.thickness";
+  return fmt::format(
+      "Lower {} (it saturates near 0.547 for equal discs and 0.384 for equal spheres, and lower in a layer of few "
+      "diameters{}), or raise {}{}",
+      what, scene.in.layers.gap > 0.0 ? " and with a gap" : "", room, early ? "" : " or layers.attempts");
+}
+
 [[noreturn]] void give_up(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region,
                           const Insertion& got, int size_class, std::uint32_t attempts) {
   const std::uint32_t limit = attempt_limit(scene);
@@ -54,13 +64,9 @@ std::optional<std::uint32_t> place_class(const comm::Comm& comm, std::int64_t un
   comm::fail_together(
       comm, ExitCode::bad_input,
       fmt::format("layer {}: random sequential addition placed {} of {} particles: solid fraction {:.4f} of {:.4f}, "
-                  "after {} trials; it ended in {} of {} attempts a particle{}{}. Lower layers.fraction (it saturates "
-                  "near 0.547 "
-                  "for equal discs and 0.384 for equal spheres, and lower in a layer of few diameters), or raise "
-                  "layers.thickness{}",
+                  "after {} trials; it ended in {} of {} attempts a particle{}{}. {}",
                   region.layer + 1, got.inserted, got.target, share, scene.in.layers.fraction, got.trials, attempts,
-                  limit, where, early ? ", as too few of the last trials were accepted" : "",
-                  early ? "" : " or layers.attempts"));
+                  limit, where, early ? ", as too few of the last trials were accepted" : "", advice(scene, early)));
 }
 
 void check_room(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {

@@ -28,7 +28,8 @@ struct Insertion {
 };
 
 /// How many particles the layer needs: the smallest n whose radii 0 .. n-1 have solid volume >= fraction * region
-/// volume. Collective. Exact sum, O(n / ranks) work and memory.
+/// volume, and of a number of particles asked for what is left of it; all of it where insertion is all there is.
+/// Collective. Exact sum, O(n / ranks) work and memory.
 [[nodiscard]] std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene,
                                             const LayerRegion& region);
 

@@ -38,22 +38,25 @@ struct Turn {
 /// Distances in a box, prepared for hot loops: a wall axis has an infinite period.
 class Metric {
  public:
-  explicit Metric(const geometry::Container& box) {
+  /// Spheres are to be `gap` [m] apart.
+  explicit Metric(const geometry::Container& box, double gap = 0.0) : gap_(gap) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (box.periodic[axis]) period_[axis] = box.size[axis];
     }
   }
 
-  /// True if the spheres have a point inside both; spheres that touch do not overlap. Both centres wrapped.
+  /// True if the spheres have a point inside both, or are nearer than the gap; spheres that touch do not overlap. Both
+  /// centres wrapped.
   [[nodiscard]] bool overlap(const Sphere& a, const Sphere& b) const noexcept {
     const double x = geometry::shortest(a.centre[0] - b.centre[0], period_[0]);
     const double y = geometry::shortest(a.centre[1] - b.centre[1], period_[1]);
     const double z = a.centre[2] - b.centre[2];
-    const double reach = a.radius + b.radius;
+    const double reach = a.radius + b.radius + gap_;
     return x * x + y * y + z * z < reach * reach;
   }
 
  private:
+  double gap_;
   std::array<double, 2> period_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 

@@ -69,7 +69,7 @@ double Bed::surface() const {
 double Bed::height() const { return scene.in.layers.height == input::HeightRule::highest ? top() : surface(); }
 
 rsa::LayerRegion Bed::next_region() const {
-  const double bottom = top(), whole = scene.in.layers.thickness;
+  const double bottom = top() + (progress.count > 0 ? scene.in.layers.gap : 0.0), whole = scene.in.layers.thickness;
   const double left = scene.container.height() - bottom;
   const bool clipped = scene.in.layers.region == input::RegionRule::container && left < whole;
   return {.layer = static_cast<std::uint32_t>(progress.first_ids.size()),

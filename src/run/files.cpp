@@ -61,6 +61,7 @@ double expected_particles(const scene::Scene& scene) {
   const input::Layers& layers = scene.in.layers;
   const double a_layer = layers.fraction * scene.container.floor_area() * layers.thickness / mean + 1.0;
   const double full = solid / mean;
+  if (scene.in.particles.count > 0) return static_cast<double>(scene.in.particles.count);
   return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;
 }
 

@@ -97,12 +97,13 @@ void add_audit(const report::Audit& audit, std::vector<std::string>& missed) {
 
 std::vector<report::Criterion> judge(const scene::Scene& scene, const observe::Rest& rest) {
   const input::Rest& limits = scene.in.rest;
-  const bool weighs = scene.in.jamming.gravity > 0.0;
+  const bool moves = !insertion_alone(scene.in);
+  const bool weighs = moves && scene.in.jamming.gravity > 0.0;
   const double none = std::numeric_limits<double>::infinity();
   return {{.name = "unbalanced_force",
            .words = "unbalanced force ratio",
            .value = rest.unbalanced_force,
-           .limit = limits.unbalanced_force},
+           .limit = moves ? limits.unbalanced_force : none},
           {.name = "kinetic_energy",
            .words = "mean kinetic energy over m g d",
            .value = rest.kinetic_energy,
@@ -130,7 +131,11 @@ bool at_rest(const std::vector<report::Criterion>& criteria) {
 
 std::vector<std::string> missed_targets(const scene::Scene& scene, const report::RunRecord& record) {
   std::vector<std::string> missed;
-  if (!record.reached) {
+  if (!record.reached && record.target_particles > 0) {
+    missed.push_back(
+        fmt::format("particles.count: {} of {} particles are there after {} layers, the most there are ({})",
+                    record.particles, record.target_particles, record.layers.size(), record.stop_reason));
+  } else if (!record.reached) {
     missed.push_back(
         fmt::format("container.size: the height is {:.4g} m of {:.4g} m after {} layers, the most there "
                     "are ({})",

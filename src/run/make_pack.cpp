@@ -24,6 +24,7 @@
 #include "run/record.hpp"
 #include "run/restart.hpp"
 #include "run/settle.hpp"
+#include "run/start.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
 
@@ -58,7 +59,7 @@ void settle_layer(Bed& bed, Journal& journal, Keeper& keeper) {
   report::LayerRow& row = bed.progress.now.row;
   row.steps = settled.steps;
   row.duration = settled.seconds;
-  row.stop_reason = settled.early ? "settled" : "duration";
+  row.stop_reason = settled.early ? "settled" : insertion_alone(bed.scene.in) ? "inserted" : "duration";
 }
 
 void measure_layer(Bed& bed) {
@@ -121,7 +122,7 @@ double sinks_by(const input::Input& in) {
 // The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
 // too few costs a second final stage, in which all that lies there creeps again.
 double final_height(const scene::Scene& scene, const pack::Progress& at) {
-  if (!(scene.relaxation > 0.0) || at.layers.empty()) return at.height;
+  if (!(scene.relaxation > 0.0) || at.layers.empty() || at.layers.back().stop_reason == taken_over) return at.height;
   const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
   if (over) return at.height;
   return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
@@ -129,7 +130,10 @@ double final_height(const scene::Scene& scene, const pack::Progress& at) {
 
 // Collective. Does the bed take another layer?
 bool takes_more(const Bed& bed) {
-  if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene.in)) return false;
+  const std::int64_t count = bed.scene.in.particles.count;
+  if (insertion_alone(bed.scene.in)) return bed.progress.count == 0;
+  if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene)) return false;
+  if (count > 0) return bed.progress.count < count && !bed.full();
   if (bed.scene.in.layers.region == input::RegionRule::container) return !bed.full();
   return final_height(bed.scene, bed.progress) < bed.scene.container.height();
 }
@@ -226,8 +230,10 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   const Stopwatch watch;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
+  for (const std::string& remark : scene.in.remarks) log::info(remark);
   Bed bed(comm, scene);
   const Origin origin = resume(files, options, bed);
+  if (scene.in.start && !origin.restarted) take_over(bed);
   const pack::Progress before = bed.progress;
   Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted);
   Keeper keeper(bed, journal, files, options, origin);

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comm/petsc.hpp"
 #include "dynamics/kernel.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
 #include "run/judge.hpp"
+#include "run/start.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -30,6 +32,13 @@ double target_sd(const scene::Scene& scene) {
   if (radius.distribution == input::SizeDistribution::gaussian) return radius.sd;
   const double mean = scene.sizes.curve().moment(1);
   return std::sqrt(std::max(0.0, scene.sizes.curve().moment(2) - mean * mean));
+}
+
+// A pack that was taken over and never moved rests as it did; without what its contacts remember that cannot be told.
+void forget_limits_of_rest(std::vector<report::Criterion>& criteria) {
+  for (report::Criterion& c : criteria) {
+    if (!c.of_overlap) c.limit = std::numeric_limits<double>::infinity();
+  }
 }
 
 void audit(const Bed& bed, report::RunRecord& record) {
@@ -56,6 +65,8 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.size = scene.container.size;
   record.target_height = scene.container.height();
   record.target_fraction = scene.in.layers.fraction;
+  record.target_particles = scene.in.particles.count;
+  record.insertion_alone = insertion_alone(scene.in);
   record.target_mean_radius = scene.sizes.mean();
   record.target_sd_radius = target_sd(scene);
   record.target_min_radius = scene.sizes.smallest();
@@ -83,8 +94,16 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.particles = at.count;
   record.height = at.height;
   const bool full = bed.full();
-  record.reached = full || at.height >= record.target_height;
-  record.stop_reason = full ? "full" : record.reached ? "height" : "layers.maximum";
+  const bool counted = record.target_particles > 0;
+  record.reached = counted                  ? at.count == record.target_particles
+                   : record.insertion_alone ? !at.layers.empty()
+                                            : full || at.height >= record.target_height;
+  record.start = taken_words(scene, at);
+  record.stop_reason = counted && record.reached ? "count"
+                       : record.insertion_alone  ? "fraction"
+                       : full                    ? "full"
+                       : record.reached          ? "height"
+                                                 : "layers.maximum";
   record.compaction_rate = at.compaction_rate;
   record.layers = at.layers;
   record.relaxations = at.relaxations;
@@ -110,6 +129,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.bytes_per_particle = bed.bytes_per_particle();
   audit(bed, record);
   record.criteria = judge(scene, record.rest);
+  if (scene.in.start && at.steps == 0) forget_limits_of_rest(record.criteria);
   record.missed = missed_targets(scene, record);
   record.targets_met = record.missed.empty();
 }

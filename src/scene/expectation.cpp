@@ -95,8 +95,10 @@ double pressing_height(const Scene& scene) {
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     if (!scene.container.periodic[axis]) walls_over_area += 2.0 / scene.container.size[axis];
   }
-  const double most = static_cast<double>(most_layers(scene.in)) * rise_of_layer(scene, expected_fraction(scene).value);
-  const double height = std::min(scene.container.height(), most);
+  const double rise = rise_of_layer(scene, expected_fraction(scene).value);
+  const double most = static_cast<double>(most_layers(scene)) * rise;
+  const double height = scene.in.particles.count > 0 ? expected_filling(scene, expected_fraction(scene).value).height
+                                                     : std::min(scene.container.height(), most);
   const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
   return rate * height > 1e-6 ? -std::expm1(-rate * height) / rate : height;
 }
@@ -104,6 +106,7 @@ double pressing_height(const Scene& scene) {
 }  // namespace
 
 BedFraction expected_fraction(const Scene& scene) {
+  if (insertion_alone(scene.in)) return {scene.in.layers.fraction, 0.0};
   const bool spin = scene.in.dynamics.rotation;
   const bool flat = scene.container.dimension == 2;
   const ByFriction& equal = flat ? (spin ? discs : discs_without_spin) : (spin ? spheres : spheres_without_spin);
@@ -126,13 +129,28 @@ double deviation_of_count(const Scene& scene, double particles) {
   return std::sqrt(particles * (uneven_volumes(scene) - 1.0));
 }
 
+std::optional<Fines> fines(const Scene& scene) {
+  constexpr double finest = 0.05;
+  const input::Radius& radius = scene.in.particles.radius;
+  if (radius.distribution != input::SizeDistribution::grading || radius.weighting != input::Weighting::mass) return {};
+  Fines found;
+  const double r = scene.sizes.curve().quantile(input::Weighting::mass, finest);
+  found.diameter = 2.0 * r;
+  found.share = scene.sizes.curve().passing(input::Weighting::number, r);
+  found.particles = static_cast<double>(expected_filling(scene, expected_fraction(scene).value).particles);
+  found.without = found.particles * (1.0 - found.share) / (1.0 - finest);
+  return found;
+}
+
 double rise_of_layer(const Scene& scene, double fraction) {
   return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.container.floor_area() * fraction);
 }
 
 std::int64_t expected_layers(const Scene& scene, double fraction) {
-  const double layers = std::ceil(scene.container.height() / rise_of_layer(scene, fraction) - 1e-9);
-  return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene.in));
+  const auto count = static_cast<double>(scene.in.particles.count);
+  const double layers = count > 0.0 ? std::ceil(count / static_cast<double>(particles_a_layer(scene)))
+                                    : std::ceil(scene.container.height() / rise_of_layer(scene, fraction) - 1e-9);
+  return std::clamp<std::int64_t>(std::llround(layers), 1, most_layers(scene));
 }
 
 double height_below(const Scene& scene, double target) {
@@ -142,6 +160,14 @@ double height_below(const Scene& scene, double target) {
 
 Filling expected_filling(const Scene& scene, double fraction) {
   const double target = scene.container.height();
+  const std::int64_t count = scene.in.particles.count;
+  if (count > 0 || insertion_alone(scene.in)) {
+    const std::int64_t particles = count > 0 ? count : particles_a_layer(scene);
+    const double solid = static_cast<double>(particles) * mean_volume(scene) / scene.container.floor_area();
+    return {.layers = expected_layers(scene, fraction),
+            .particles = particles,
+            .height = insertion_alone(scene.in) ? target : solid / fraction};
+  }
   if (scene.in.layers.region == input::RegionRule::open) {
     const std::int64_t layers = expected_layers(scene, fraction);
     return {.layers = layers,
@@ -150,7 +176,7 @@ Filling expected_filling(const Scene& scene, double fraction) {
   }
   Filling filling;
   double surface = 0.0, top = 0.0;
-  while (target - top >= 2.0 * scene.sizes.largest() && filling.layers < most_layers(scene.in)) {
+  while (target - top >= 2.0 * scene.sizes.largest() && filling.layers < most_layers(scene)) {
     surface += scene.in.layers.fraction * std::min(scene.in.layers.thickness, target - top) / fraction;
     top = surface + roughness * 2.0 * scene.sizes.mean();
     ++filling.layers;
@@ -169,6 +195,7 @@ double expected_overlap(const Scene& scene, double youngs_modulus) {
   constexpr double uneven = 0.9;  // mean of f^(2/3) over that of the mean force, where forces are as uneven as in packs
   const bool flat = scene.container.dimension == 2;
   const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing_height(scene);
+  if (!(stress > 0.0)) return 0.0;
   const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
                          (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);
   const double root = elementary::cube_root(squeeze);

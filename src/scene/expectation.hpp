@@ -2,6 +2,7 @@
 /// from what packs came to that were made (doc/estimate.md).
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "scene/scene.hpp"
 
@@ -23,10 +24,21 @@ struct BedFraction {
 /// sqrt(N) times the coefficient of variation of the volume (renewal theory, for many); 0 for equal radii.
 [[nodiscard]] double deviation_of_count(const Scene& scene, double particles);
 
+/// What the finest 5 % by mass of a grading curve come to.
+struct Fines {
+  double diameter = 0.0;   ///< [m] below which they are
+  double share = 0.0;      ///< of the particles
+  double particles = 0.0;  ///< of the scene, in all
+  double without = 0.0;    ///< of the scene without them, at the same solid volume
+};
+/// None: the sizes are not a grading curve by mass. Local, pure.
+[[nodiscard]] std::optional<Fines> fines(const Scene& scene);
+
 /// Height [m] by which a layer raises a bed of this solid fraction.
 [[nodiscard]] double rise_of_layer(const Scene& scene, double fraction);
 
-/// Layers that fill the scene's height at this solid fraction; layers.maximum at most.
+/// Layers that fill the scene's height, or hold its number of particles, at this solid fraction; layers.maximum at
+/// most.
 [[nodiscard]] std::int64_t expected_layers(const Scene& scene, double fraction);
 
 /// What a scene is filled with.
@@ -35,8 +47,8 @@ struct Filling {
   double height = 0.0;           ///< [m]
   std::int64_t uncertainty = 0;  ///< particles more or less that the last layer may come to, at a known fraction
 };
-/// At this solid fraction: whole layers until the bed has the scene's height; or with layers.region = "container" what
-/// fits below it, the last layers ever thinner. Local, pure.
+/// At this solid fraction: the number of particles asked for; insertion alone; whole layers until the bed has the
+/// scene's height; or with layers.region = "container" what fits below it, the last layers ever thinner. Local, pure.
 [[nodiscard]] Filling expected_filling(const Scene& scene, double fraction);
 
 /// Height [m] of the bed below H_d with layers.region = "container": the roughness of its surface is left, and half of

@@ -7,6 +7,7 @@
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "geometry/volume.hpp"
 #include "input/radius_range.hpp"
 #include "input/time_step.hpp"
 
@@ -81,8 +82,17 @@ double near_speed(const Scene& scene) {
 
 }  // namespace
 
-std::int64_t most_layers(const input::Input& in) {
+std::int64_t most_layers(const Scene& scene) {
+  const input::Input& in = scene.in;
+  if (insertion_alone(in)) return 1;
   if (in.layers.maximum > 0) return in.layers.maximum;
+  if (in.particles.count > 0) {
+    constexpr double uneven = 1.5;  // of the volumes that happen to be drawn
+    const int power = scene.container.dimension;
+    const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
+    const double a_layer = in.layers.fraction * scene.container.floor_area() * in.layers.thickness;
+    return static_cast<std::int64_t>(std::ceil(uneven * static_cast<double>(in.particles.count) * mean / a_layer)) + 2;
+  }
   const input::Layers& layers = in.layers;
   const auto whole =
       static_cast<std::int64_t>(std::ceil(in.container.size.back() / (layers.fraction * layers.thickness))) + 2;
@@ -95,7 +105,8 @@ std::int64_t most_layers(const input::Input& in) {
 
 double speed_bound(const Scene& scene) {
   const input::Input& in = scene.in;
-  const double drop = static_cast<double>(most_layers(in)) * in.layers.thickness;  // were every layer on the last one
+  const double drop =
+      static_cast<double>(most_layers(scene)) * in.layers.thickness;  // were every layer on the last one
   const double fluid = scene.features.drag ? norm(in.drag.fluid_velocity) : 0.0;
   const double spin = scene.features.rotation ? norm(in.layers.spin) * scene.sizes.largest() : 0.0;
   return speed_headroom * (input::impact_speed(in, drop) + fluid + spin + near_speed(scene));

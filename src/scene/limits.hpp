@@ -7,8 +7,9 @@
 namespace packmpi::scene {
 
 /// Every layer adds phi_0 h_0 of solid and no bed is denser than solid: more layers than this never come to H_d, nor
-/// more of those that end there.
-[[nodiscard]] std::int64_t most_layers(const input::Input& in);
+/// more of those that end there. For a
+/// number of particles, half as much again as they have in the mean; one, where insertion is all there is.
+[[nodiscard]] std::int64_t most_layers(const Scene& scene);
 
 /// What no particle of a valid run comes near [m/s]: 16 times what falls, inserted speeds, fluid and near field can
 /// give together (doc/theory.md, "Guards").

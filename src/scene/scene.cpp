@@ -49,6 +49,12 @@ double choose_time_step(const input::Input& in, const Sizes& sizes, const char* 
   return *asked;
 }
 
+// Nothing moves, so no step has a limit; what is never used is what would be, or a second.
+double unused_step(const input::Input& in, const Sizes& sizes) {
+  const double step = input::automatic_step(in, range(sizes), in.particles.youngs_modulus);
+  return in.dynamics.time_step.value_or(std::isfinite(step) && step > 0.0 ? step : 1.0);
+}
+
 double settling_modulus(const input::Input& in) {
   return in.layers.youngs_modulus.value_or(in.particles.youngs_modulus);
 }
@@ -90,6 +96,7 @@ void check_periodic(const input::Input& in, const Scene& scene) {
 // What a window left frozen needs a time of its own to come to rest under what was put onto it (doc/theory.md).
 double choose_relaxation(const input::Input& in) {
   constexpr double usual = 0.9;  // [s]
+  if (insertion_alone(in)) return 0.0;
   return in.dynamics.relaxation.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
 }
 
@@ -97,6 +104,7 @@ double choose_relaxation(const input::Input& in) {
 double choose_wait(const input::Input& in) {
   constexpr double falls = 10.0;
   const double g = in.jamming.gravity;
+  if (insertion_alone(in)) return 0.0;
   return in.rest.wait.value_or(g > 0.0 ? falls * std::sqrt(2.0 * in.container.size.back() / g) : 0.0);
 }
 
@@ -136,6 +144,35 @@ std::int64_t most_columns(const Scene& scene) {
   return static_cast<std::int64_t>(wanted < countable ? std::max(wanted, always) : countable);  // NaN: countable
 }
 
+// The solid fraction of exactly so many particles in the container.
+double fraction_of_count(const input::Input& in, const Scene& scene) {
+  const int power = scene.container.dimension;
+  const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
+  const double fraction =
+      static_cast<double>(in.particles.count) * mean / scene.container.volume_between(0.0, in.container.size.back());
+  if (fraction < 1.0) return fraction;
+  refuse(in, fmt::format("particles.count: {} particles have {:.3g} times the container's volume; lower it, or enlarge "
+                         "container.size",
+                         in.particles.count, fraction));
+}
+
+// Steps, and moduli under which they hold.
+void choose_stages(const input::Input& in, Scene& scene) {
+  scene.relaxation = choose_relaxation(in);
+  scene.wait = choose_wait(in);
+  if (insertion_alone(in)) {
+    scene.time_step = unused_step(in, scene.sizes);
+    scene.settling = scene.last();
+    return;
+  }
+  scene.time_step =
+      choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
+  scene.settling = choose_settling(in, scene.sizes, scene.time_step);
+  check_softness(in, scene, "particles.youngs_modulus", in.particles.youngs_modulus);
+  if (softer(in)) check_softness(in, scene, "layers.youngs_modulus", *in.layers.youngs_modulus);
+  if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
+}
+
 int size_levels(const Sizes& sizes) {
   if (!(sizes.ratio() > input::alike_ratio)) return 1;
   int levels = 1;
@@ -169,14 +206,8 @@ Scene build(const input::Input& in) {
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
   scene.skin = std::min(skin_per_radius * scene.sizes.largest(), skin_per_mean * scene.sizes.mean());
   scene.features.size_levels = size_levels(scene.sizes);
-  scene.time_step =
-      choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
-  scene.settling = choose_settling(in, scene.sizes, scene.time_step);
-  scene.relaxation = choose_relaxation(in);
-  scene.wait = choose_wait(in);
-  check_softness(in, scene, "particles.youngs_modulus", in.particles.youngs_modulus);
-  if (softer(in)) check_softness(in, scene, "layers.youngs_modulus", *in.layers.youngs_modulus);
-  if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
+  if (insertion_alone(in) && in.particles.count > 0) scene.in.layers.fraction = fraction_of_count(in, scene);
+  choose_stages(in, scene);
   check_periodic(in, scene);
   scene.most_columns = most_columns(scene);
   scene.force_quantum = force_quantum(scene);

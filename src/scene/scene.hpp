@@ -32,8 +32,8 @@ struct Scene {
   double speed_bound = 0.0;       ///< [m/s] no particle of a valid run is as fast
   std::int64_t most_columns = 1;  ///< of the lateral grid: memory for empty ground is bounded (doc/theory.md)
 
-  /// Width the columns of the lateral grid need at least: reach + skin [m].
-  [[nodiscard]] double column_width() const noexcept { return reach + skin; }
+  /// Width the columns of the lateral grid need at least: reach + skin [m], and the gap of insertion.
+  [[nodiscard]] double column_width() const noexcept { return reach + skin + in.layers.gap; }
   /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns.
   [[nodiscard]] geometry::ColumnGrid columns() const { return {container, column_width(), most_columns}; }
   /// The final stage, once it is hard.

@@ -32,6 +32,10 @@ double rooted(double value, int e) {
       return std::sqrt(std::sqrt(value));
     case 3:
       return cube_root(value);
+    case 2:
+      return std::sqrt(value);
+    case -1:
+      return 1.0 / value;
     case -2:
       return 1.0 / std::sqrt(value);
     case -3:
@@ -52,8 +56,20 @@ double inverse(double a, double b, int e, double share) {
   return std::clamp(r, a, b);
 }
 
+// The power of the radius that a weighting counts particles by.
+int counted(Weighting weighting) {
+  switch (weighting) {
+    case Weighting::number:
+      return 0;
+    case Weighting::area:
+      return 2;
+    default:
+      return 3;  // mass
+  }
+}
+
 // Exponent of the integral that counts particles (or mass) where the number density is radius^-power.
-int exponent(Weighting weighting, int power) { return (weighting == Weighting::number ? 1 : 4) - power; }
+int exponent(Weighting weighting, int power) { return counted(weighting) + 1 - power; }
 
 // Mean of radius^moment over the particles of a piece.
 double mean_power(double low, double high, int power, int moment) {
@@ -61,9 +77,9 @@ double mean_power(double low, double high, int power, int moment) {
   return integral(low, high, moment + 1 - power) / integral(low, high, 1 - power);
 }
 
-// The power of a piece in which number (or mass) is linear in the radius, or in its logarithm.
-int linear_power(Weighting weighting) { return weighting == Weighting::number ? 0 : 3; }
-int log_power(Weighting weighting) { return weighting == Weighting::number ? 1 : 4; }
+// The power of a piece in which number (or area or mass) is linear in the radius, or in its logarithm.
+int linear_power(Weighting weighting) { return counted(weighting); }
+int log_power(Weighting weighting) { return counted(weighting) + 1; }
 
 }  // namespace
 
@@ -80,6 +96,9 @@ SizeCurve::SizeCurve(const input::Radius& radius) {
       break;
     case SizeDistribution::discrete:
       add_classes(radius.radii, radius.shares);
+      break;
+    case SizeDistribution::list:
+      add_list(radius.radii);
       break;
     case SizeDistribution::grading: {
       const input::Curve curve = input::kept_curve(radius);
@@ -103,6 +122,14 @@ void SizeCurve::add(double low, double high, int power, double share) {
 
 void SizeCurve::add_classes(const std::vector<double>& radii, const std::vector<double>& shares) {
   for (std::size_t k = 0; k < radii.size(); ++k) add(radii[k], radii[k], 0, shares[k]);
+}
+
+void SizeCurve::add_list(std::vector<double> radii) {
+  std::ranges::sort(radii);
+  for (std::size_t begin = 0, end = 0; begin < radii.size(); begin = end) {
+    while (end < radii.size() && radii[end] == radii[begin]) ++end;
+    add(radii[begin], radii[begin], 0, static_cast<double>(end - begin));
+  }
 }
 
 void SizeCurve::add_smooth(const input::Radius& in) {
@@ -140,7 +167,9 @@ void SizeCurve::finish(Weighting weighting) {
   double mass = 0.0;
   for (Piece& piece : pieces_) {
     const double cube = mean_power(piece.low, piece.high, piece.power, 3);
-    (weighting == Weighting::number ? piece.mass *= cube : piece.number /= cube);
+    const bool area = weighting == Weighting::area;
+    if (area) piece.mass = piece.number /= mean_power(piece.low, piece.high, piece.power, 2);
+    (weighting == Weighting::number || area ? piece.mass *= cube : piece.number /= cube);
     number += piece.number;
     mass += piece.mass;
   }

@@ -19,6 +19,7 @@ class SizeCurve {
   [[nodiscard]] double smallest() const noexcept { return pieces_.front().low; }  ///< [m]
   [[nodiscard]] double largest() const noexcept { return pieces_.back().high; }   ///< [m]
 
+  /// `weighting` is by number or by mass here: shares of area are those of mass of no body.
   /// Share of the particles (or the mass) with a radius of at most r [m].
   [[nodiscard]] double passing(input::Weighting weighting, double r) const;
   /// The smallest radius [m] that a share in (0, 1) of the particles (or the mass) does not exceed.
@@ -40,6 +41,7 @@ class SizeCurve {
   void add(double low, double high, int power, double share);
   void finish(input::Weighting weighting);
   void add_smooth(const input::Radius& radius);
+  void add_list(std::vector<double> radii);
   void add_classes(const std::vector<double>& radii, const std::vector<double>& shares);
 
   std::vector<Piece> pieces_;

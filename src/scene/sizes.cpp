@@ -52,9 +52,28 @@ double truncated_normal(const input::Radius& radius, random::Name name) {
   return std::clamp(radius.mean, radius.min, radius.max);  // probability below 1e-15 even 5 sd off the mean
 }
 
+// Shuffled by the seed (Fisher and Yates, backwards), or as it is.
+std::vector<double> in_order(const input::Radius& radius, std::uint64_t seed) {
+  std::vector<double> list = radius.radii;
+  if (radius.order == input::ListOrder::file) return list;
+  for (std::size_t k = list.size(); k > 1; --k) {
+    const auto [a, b] = random::words({seed, random::Purpose::radius, 0, k, 0});
+    std::swap(list[k - 1], list[(a ^ b) % k]);
+  }
+  return list;
+}
+
 }  // namespace
 
-double Sizes::draw(std::uint32_t layer, std::uint64_t index) const {
+Sizes::Sizes(const input::Radius& radius, std::uint64_t seed)
+    : radius_(radius), seed_(seed), curve_(std::make_shared<const SizeCurve>(radius)) {
+  if (radius.distribution != input::SizeDistribution::list) return;
+  list_ = std::make_shared<const std::vector<double>>(in_order(radius, seed));
+  radius_.radii.clear();  // they are in list_
+}
+
+double Sizes::draw(std::uint32_t layer, std::uint64_t index, GlobalId first) const {
+  if (list_) return (*list_)[std::min(static_cast<std::size_t>(first) + index, list_->size() - 1)];
   const random::Name name{seed_, random::Purpose::radius, layer, index, 0};
   if (equal()) return radius_.value;
   if (bounded() && radius_.distribution == input::SizeDistribution::gaussian) return truncated_normal(radius_, name);

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "comm/comm.hpp"
 #include "input/read.hpp"
+#include "tables/sieve_table.hpp"
 
 namespace packmpi::input {
 namespace {
@@ -93,8 +94,8 @@ TEST(BadInput, EmptyFile) {
 }
 
 TEST(BadInput, HugeFile) {
-  EXPECT_EQ(complaint([] { (void)parse(std::string((1U << 20U) + 1, '\n'), "a.toml", {}); }),
-            "a.toml:1: the file is longer than 1 MiB; is it a scene?");
+  EXPECT_EQ(complaint([] { (void)parse(std::string((4U << 20U) + 1, '\n'), "a.toml", {}); }),
+            "a.toml:1: the file is longer than 4 MiB; is it a scene?");
 }
 
 TEST(BadInput, NestingThatWouldOverflowTheStack) {
@@ -126,20 +127,56 @@ TEST(BadInput, FolderAndMissingFile) {
             nowhere + ": cannot be opened (No such file or directory); check the path");
 }
 
-TEST(BadInput, GradingFiles) {
-  const auto of = [](const std::string& text) { return complaint([&] { (void)read_curve({"g.csv", text}); }); };
-  const std::string head = "diameter_mm,percent_passing\n";
-  EXPECT_EQ(of(""), "g.csv:0: is empty; the first line must be \"diameter_mm,percent_passing\"");
-  EXPECT_EQ(of("# my sand\n1,2\n"),
-            "g.csv:2: is no grading curve; the first line must be \"diameter_mm,percent_passing\" (or _m, _cm, _um)");
-  EXPECT_EQ(of("diameter_kg,percent_passing\n"),
-            "g.csv:1: is no grading curve; the first line must be \"diameter_mm,percent_passing\" (or _m, "
-            "_cm, _um)");
-  EXPECT_EQ(of(head + "1;2\n"), "g.csv:2: is \"1;2\"; give two numbers with a comma");
-  EXPECT_EQ(of(head + "1,2\n\n4,x\n"), "g.csv:4: \"x\" is not a number; write 4.75,63.2 (a point, no units)");
-  EXPECT_EQ(of(head + "1,2,3\n"), "g.csv:2: \"2,3\" is not a number; write 4.75,63.2 (a point, no units)");
+TEST(BadInput, SieveTables) {
+  const auto of = [](const std::string& text) {
+    return complaint([&] { (void)tables::read_sieve_table({"g.csv", text}); });
+  };
+  const std::string head = "diameter_mm,percent_passing\n", retained = "sieve_mm;percent_retained\n";
+  const std::string no_table =
+      "is no grading curve; the first line must name the columns, such as \"diameter_mm,percent_passing\", "
+      "\"sieve_mm;percent_retained\" or \"sieve_mm;mass_retained_g\" (or _m, _cm, _um)";
+  EXPECT_EQ(of(""), "g.csv:1: is empty; the first line must be \"diameter_mm,percent_passing\"");
+  EXPECT_EQ(of("\xff\xfe"), "g.csv:1: is UTF-16; save it as CSV in UTF-8");
+  EXPECT_EQ(of("# my sand\n1,2\n"), "g.csv:2: " + no_table);
+  EXPECT_EQ(of("diameter_kg,percent_passing\n"), "g.csv:1: " + no_table);
+  EXPECT_EQ(of("diameter,percent_passing\n"), "g.csv:1: " + no_table) << "without a unit";
+  EXPECT_EQ(of("diameter_mm,height_m\n"), "g.csv:1: " + no_table);
+  const std::string as_many = "; give as many, and where decimals have commas, separate columns by semicolons";
+  EXPECT_EQ(of(head + "1;2\n"), "g.csv:2: has 1 cell, the first line has 2" + as_many);
+  EXPECT_EQ(of(head + "1,2,3\n"), "g.csv:2: has 3 cells, the first line has 2" + as_many);
+  EXPECT_EQ(of(head + "1,2\n\n4,x\n"), "g.csv:4: \"x\" is not a number; write 4.75,63.2 (a point), or 4,75;63,2");
   EXPECT_EQ(of(head + "-1,2\n"), "g.csv:2: a diameter must be above 0");
   EXPECT_EQ(of(head + "1,200\n"), "g.csv:2: 200 percent; give 0 to 100");
+  EXPECT_EQ(of("diameter_mm;percent_passing\n2.5;0\n4,5;100\n"),
+            "g.csv:3: \"4,5\": the file has decimal points and decimal commas, or thousands; use one kind alone");
+  EXPECT_EQ(of(head + "1,0\n2,50\n1,0\n"), "g.csv:4: the sieve of line 2 is there again");
+  EXPECT_EQ(of(retained + "4;0\n2;40\n1;60\n"),
+            "g.csv:1: percent retained may be each sieve's own or cumulative here; name the column "
+            "percent_retained_by_sieve or cumulative_percent_retained");
+  EXPECT_EQ(
+      of(retained + "4;0\n2;90\n1;60\n"),
+      "g.csv:1: percent retained is neither cumulative, as it does not grow to finer sieves, nor each sieve's own, "
+      "as the sum is 150; check the numbers");
+  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\n2;90\n1;60\n"),
+            "g.csv:1: masses by sieve do not tell what passes the finest; add a line for the pan, such as \"pan,0\"");
+  EXPECT_EQ(of("sieve_mm;cumulative_mass_retained_g\n4;0\n2;90\n"),
+            "g.csv:1: cumulative masses need the whole; add a line for the pan with the mass of all");
+  EXPECT_EQ(of("sieve_mm;cumulative_mass_retained_g\n4;0\n2;90\npan;80\n"),
+            "g.csv:3: is more than all; check the numbers");
+  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\n2;-1\n"), "g.csv:3: -1 is below 0; give masses");
+  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\npan;0\n"), "g.csv:1: all is 0; check the numbers");
+  EXPECT_EQ(of("sieve_mm;percent_retained_each\n4;0\n2;50\npan;10\n"),
+            "g.csv:1: the shares add up to 60 percent; give 100");
+}
+
+TEST(BadInput, FinesOfWhichNothingIsKnown) {
+  const std::string scene =
+      "particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = \"g.csv\" }";
+  const CurveFile file{"g.csv", "sieve_mm,mass_retained_g\n40,0\n20,150\n10,40\npan,10\n"};
+  EXPECT_EQ(
+      complaint([&] { (void)parse(good, "good.toml", {{scene}}, file); }),
+      "g.csv: the curve begins at 5 percent; begin with the diameter that nothing passes, 0 percent, or leave the "
+      "finest out: keep_percent = [5, 100]");
 }
 
 TEST(BadInput, AGradingFileLiesBesideTheScene) {

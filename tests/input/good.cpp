@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "input/fidelity.hpp"
+#include "input/grading.hpp"
 #include "input/keys.hpp"
 #include "input/radius_range.hpp"
 #include "input/read.hpp"
@@ -17,7 +19,8 @@
 #include "input/rhythm.hpp"
 #include "input/starter.hpp"
 #include "input/time_step.hpp"
-#include "input/units.hpp"
+#include "tables/sieve_table.hpp"
+#include "tables/units.hpp"
 
 namespace packmpi::input {
 namespace {
@@ -522,6 +525,117 @@ TEST(GoodInput, AGradingFileIsTheSameAsItsPoints) {
   EXPECT_EQ(radius.interpolation, Interpolation::log);
 }
 
+struct Table {
+  const char *text, *reading;
+};
+
+// A sand, as it comes from a sheet: the same curve, to the bit, however it is written.
+TEST(GoodInput, SieveTablesAreReadAsPeopleHaveThem) {
+  const Curve sand{{0.002, 0.0}, {0.004, 25.0}, {0.008, 62.5}, {0.016, 100.0}};
+  const std::string sieves = ": 4 sieves, diameters 0.002 to 0.016 m";
+  for (const auto& [text, reading] : {
+           Table{"\xef\xbb\xbf"
+                 "diameter_mm,percent_passing\r\n2,0\r\n4,25\r\n8,62.5\r\n16,100\r\n",
+                 "percent passing over diameters in mm, with a byte-order mark"},
+           Table{"Sieve [mm];Percent finer [%]\n16,0;100\n8,0;62,5\n4,0;25\n2,0;0\n",
+                 "percent passing over diameters in mm, coarsest first, decimal commas"},
+           Table{"sep=;\nradius_mm;passing\n4;62.5 %\n1;0 %\n8;100 %\n2;25 %\n",
+                 "percent passing over radii in mm, in no order"},
+           Table{"\"size (\xc2\xb5m)\",\"% passing\"\n\"2000\",\"0\"\n4000,25\n8000,\"62,5\"\n16000,100\n",
+                 "percent passing over diameters in \xc2\xb5m, decimal commas"},
+           Table{"sieve_mm\tpercent_retained\n16\t0\n8\t37.5\n4\t37.5\n2\t25\npan\t0\n",
+                 "retained by sieve over diameters in mm, coarsest first, with a pan"},
+           Table{"sieve_mm,percent_retained\n16,0\n8,37.5\n4,75\n2,100\n",
+                 "cumulative retained over diameters in mm, coarsest first"},
+           Table{"sieve_cm,mass retained (g)\n1.6,0\n0.8,300\n0.4,300\n0.2,200\nPan,0\n",
+                 "mass, retained by sieve over diameters in cm, coarsest first, with a pan"},
+           Table{"sieve_mm;cumulative mass retained (g)\n16;0\n8;300\n4;600\n2;800\npan;800\n",
+                 "mass, cumulative retained over diameters in mm, coarsest first, with a pan"},
+           Table{"sample,sieve_mm,mass_retained_g,percent_passing\na,16,0,100\na,8,300,62.5\na,4,300,25\na,2,200,0\n",
+                 "percent passing over diameters in mm (columns 4 and 2), coarsest first"},
+       }) {
+    const tables::SieveTable table = tables::read_sieve_table({"g.csv", text});
+    EXPECT_EQ(table.curve, sand) << text;
+    EXPECT_EQ(table.reading, "g.csv: read as " + std::string(reading) + sieves);
+  }
+}
+
+TEST(GoodInput, WhatPassesTheFinestSieveMayBeLeftOut) {
+  const CurveFile file{"g.csv", "sieve_mm,mass_retained_g\n40,0\n20,150\n10,40\npan,10\n"};
+  const std::string table =
+      R"(distribution = "grading", diameter_curve_file = "g.csv", weighting = "mass", keep_percent = [5, 100])";
+  const Radius radius = radius_of(table, file);
+  EXPECT_EQ(radius.diameter_curve, (Curve{{0.01, 5.0}, {0.02, 25.0}, {0.04, 100.0}}));
+  EXPECT_EQ(kept_curve(radius).front(), (std::array<double, 2>{0.01, 0.0}));
+  EXPECT_EQ(
+      parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, file).remarks,
+      std::vector<std::string>{"g.csv: read as mass, retained by sieve over diameters in mm, coarsest first, with a "
+                               "pan: 3 sieves, diameters 0.01 to 0.04 m"});
+}
+
+TEST(GoodInput, DiametersStandForRadii) {
+  const auto of = [](const std::string& table) {
+    std::string text = least;
+    text.replace(text.find("radius = "), std::string("radius = { distribution = \"equal\", value = 0.02 }").size(),
+                 "diameter = { " + table + " }");
+    return parse(text, "a.toml", {});
+  };
+  EXPECT_EQ(of(R"(distribution = "equal", value = "40 mm")").effective, parse(least, "a.toml", {}).effective);
+  const Radius gaussian =
+      of(R"(distribution = "gaussian", mean = 0.04, sd = 0.004, min = "30 mm", max = 0.05, weighting = "area")")
+          .particles.radius;
+  EXPECT_EQ((std::array{gaussian.mean, gaussian.sd, gaussian.min, gaussian.max}),
+            (std::array{0.02, 0.002, 0.015, 0.025}));
+  EXPECT_EQ(gaussian.weighting, Weighting::area);
+  EXPECT_EQ(of(R"(distribution = "list", diameters = [0.02, "4 cm"])").particles.radius.radii,
+            (std::vector<double>{0.01, 0.02}));
+  const Radius curve =
+      of(R"(distribution = "grading", weighting = "mass", diameter_curve = [[0.04, 100], [0.02, 0]])").particles.radius;
+  EXPECT_EQ(curve.diameter_curve, (Curve{{0.02, 0.0}, {0.04, 100.0}})) << "diameters in either table, sorted";
+  EXPECT_FALSE(curve.diameters) << "all are radii now";
+}
+
+TEST(GoodInput, AListOfSizesIsANumberOfParticles) {
+  const CurveFile file{"grains.csv",
+                       "\xef\xbb\xbf"
+                       "no;diameter_mm;mass_g\r\n1;20,5;3\r\n2;40;4\r\n3;20,5;3\r\n"};
+  const std::string table =
+      "particles.radius={ distribution = \"list\", list_file = \"grains.csv\", order = \"file\" }";
+  const Input in = parse(least, "a.toml", {{table}}, file);
+  EXPECT_EQ(in.particles.radius.radii, (std::vector<double>{0.01025, 0.02, 0.01025}));
+  EXPECT_EQ(in.particles.count, 3);
+  EXPECT_EQ(in.remarks,
+            std::vector<std::string>{"grains.csv: read as diameters in mm: 3 sizes, diameters 0.0205 to 0.04 m"});
+  const Input again = parse(in.effective, "b.toml", {});
+  EXPECT_EQ(again.effective, in.effective) << "it needs no file";
+  EXPECT_EQ(again.particles.radius.order, ListOrder::file);
+}
+
+TEST(GoodInput, InsertionAloneAsksForLittle) {
+  const std::string text =
+      "[container]\nsize = [1.0, 1.0, 0.5]\n[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\n"
+      "poisson_ratio = 0.25\nradius = { distribution = \"equal\", value = 0.02 }\n[layers]\nduration = 0\n";
+  const Input by_fraction = parse(text + "fraction = 0.3\n", "a.toml", {});
+  EXPECT_TRUE(insertion_alone(by_fraction));
+  EXPECT_EQ(by_fraction.layers.thickness, 0.5) << "the whole container";
+  EXPECT_EQ(by_fraction.jamming.gravity, 0.0);
+  const Input by_count = parse(text, "a.toml", {{"particles.count=100", "fidelity=balanced"}});
+  EXPECT_EQ(by_count.particles.count, 100);
+  for (const Input& in : {by_fraction, by_count}) EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective);
+}
+
+TEST(GoodInput, UnitsAsPeopleWriteThem) {
+  EXPECT_EQ(tables::parse_scalar("7 \xc2\xb5m", length).value, 7e-6);  // the micro sign
+  EXPECT_EQ(tables::parse_scalar("7\xce\xbcm", length).value, 7e-6);   // the letter mu
+  EXPECT_EQ(tables::parse_scalar("2650 kg/m^3", density).value, 2650.0);
+  EXPECT_EQ(tables::parse_scalar("2.65 g/cm\xc2\xb3", density).value, 2650.0);
+  EXPECT_EQ(tables::parse_scalar("9.81 m/s^2", acceleration).value, 9.81);
+  EXPECT_EQ(tables::parse_scalar("9.81 m/s\xc2\xb2", acceleration).value, 9.81);
+  EXPECT_EQ(tables::parse_scalar("50 N/mm^2", pressure).value, 5e7);
+  EXPECT_EQ(tables::parse_scalar("5 N\xc2\xb7s/m", drag_factor).value, 5.0);
+  EXPECT_FALSE(tables::parse_scalar("5 ^m", density).value);
+}
+
 TEST(GoodInput, KeptPartOfACurve) {
   Radius radius;
   radius.diameter_curve = {{0.001, 0.0}, {0.01, 50.0}, {0.1, 100.0}};
@@ -572,16 +686,16 @@ TEST(GoodInput, EffectiveInputIsOfTheSameScene) {
 }
 
 TEST(Units, AreExact) {
-  const auto metres = [](const char* text) { return parse_scalar(text, length).value; };
+  const auto metres = [](const char* text) { return tables::parse_scalar(text, length).value; };
   EXPECT_EQ(metres("20 mm"), 0.02);
   EXPECT_EQ(metres("0.3mm"), 0.0003);  // 0.3 * 1e-3 is another double
   EXPECT_EQ(metres(" 12.3e-1 \t um "), 1.23e-6);
   EXPECT_EQ(metres("1E+2 nm"), 1e-7);
   EXPECT_EQ(metres("7 km"), 7000.0);
   EXPECT_EQ(metres("-1 cm"), -0.01);
-  EXPECT_EQ(parse_scalar("1 g/cm3", density).value, 1000.0);
-  EXPECT_EQ(parse_scalar("48 GPa", pressure).value, 48e9);
-  EXPECT_EQ(parse_scalar("5 mN s/m", drag_factor).value, 0.005);
+  EXPECT_EQ(tables::parse_scalar("1 g/cm3", density).value, 1000.0);
+  EXPECT_EQ(tables::parse_scalar("48 GPa", pressure).value, 48e9);
+  EXPECT_EQ(tables::parse_scalar("5 mN s/m", drag_factor).value, 0.005);
   for (const char* wrong :
        {"", "mm", "1", "1 MM", "1 m m", "nan m", "inf m", "0x1p3 m", "1e m", "1e99999 m", "--1 m"}) {
     EXPECT_FALSE(metres(wrong).has_value()) << wrong;

@@ -164,6 +164,34 @@ TEST(Radii, Weibull) {
   }
 }
 
+// The number density of shares by area is that of the distribution over r^2.
+TEST(Radii, ByAreaAsASectionHasThem) {
+  const auto distance = [](const input::Radius& radius, const std::function<double(double)>& number) {
+    const scene::Sizes sizes(radius, 42);
+    std::vector<double> r;
+    for (int k = 0; k < draws; ++k) r.push_back(sizes.draw(0, static_cast<std::uint64_t>(k)));
+    std::ranges::sort(r);
+    double most = 0.0;
+    for (int k = 0; k < draws; ++k)
+      most = std::max(most, std::abs((k + 0.5) / draws - number(r[static_cast<std::size_t>(k)])));
+    return most;
+  };
+  const double a = 0.001, b = 0.02, noise = 1.95 / std::sqrt(draws);
+  const input::Radius uniform = truncated_radius(SizeDistribution::uniform, Weighting::area, a, b);
+  EXPECT_LT(distance(uniform, [=](double r) { return (1.0 / a - 1.0 / r) / (1.0 / a - 1.0 / b); }), noise);
+  input::Radius curve = uniform;
+  curve.distribution = SizeDistribution::grading;
+  curve.diameter_curve = {{2.0 * a, 0.0}, {2.0 * b, 100.0}};
+  EXPECT_LT(distance(curve, [=](double r) { return (1 / (a * a) - 1 / (r * r)) / (1 / (a * a) - 1 / (b * b)); }),
+            noise);
+  input::Radius two = uniform;
+  two.distribution = SizeDistribution::discrete;
+  two.radii = {0.001, 0.002};
+  two.shares = {1.0, 1.0};
+  EXPECT_NEAR(scene::SizeCurve(two).passing(Weighting::number, 0.001), 0.8, 1e-15);
+  EXPECT_NEAR(scene::SizeCurve(two).passing(Weighting::mass, 0.001), 1.0 / 3.0, 1e-15);
+}
+
 TEST(Radii, GaussianAndUniformByMass) {
   input::Radius radius = truncated_radius(SizeDistribution::gaussian, Weighting::mass, 0.01, 0.03);
   radius.mean = 0.02;

@@ -64,7 +64,7 @@ TEST_P(Region, EndsAtTheHeight) {
   const double target = scene.container.height();
   int clipped = 0, whole = 0;
   while (!bed.full()) {
-    ASSERT_LT(clipped + whole, scene::most_layers(scene.in));
+    ASSERT_LT(clipped + whole, scene::most_layers(scene));
     bed.store.set_ghosts(0);
     const rsa::LayerRegion region = bed.next_region();
     EXPECT_EQ(region.clipped, region.bottom + scene.in.layers.thickness > target);

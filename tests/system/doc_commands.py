@@ -30,6 +30,11 @@ COMMANDS = {
     "mpirun -n 2 build/packmpi input/quickstart.toml -o night --max-steps 2000 || test $? = 75":
         ("--max-steps 2000", "--max-steps 150 " + SMALL),
     "build/packmpi input/quickstart.toml -o night --restart auto": SMALL,
+    "build/packmpi check input/concrete.toml": "",
+    "mpirun -n 2 build/packmpi input/concrete.toml": "--quiet",
+    "packmpi convert concrete.hdf --to csv": "",
+    "mpirun -n 2 build/packmpi input/quickstart.toml -o ground": SMALL,
+    'mpirun -n 2 build/packmpi input/quickstart.toml -o higher --set "start.pack=$PWD/ground/quickstart.hdf" --set "container.size=[0.6, 0.6, 0.6]"': SMALL,
     "scripts/study/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made || test $? = 3",   # a target was missed
     "packmpi estimate input/quickstart.toml": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
@@ -44,7 +49,7 @@ COMMANDS = {
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
 NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
-          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
+          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "quickstart.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew

@@ -55,4 +55,7 @@ with tempfile.TemporaryDirectory() as work:
     valid = tomllib.loads(begun[1].read_text())
 for path, value in [*SLIPS.items(), ("layers.thickness", None), ("particles.radius", None), ("jamming", None)]:
     assert not check.is_valid(changed(valid, path, value)), f"{path} = {value} was taken"
+assert check.is_valid(changed(changed(changed(valid, "layers.duration", 0), "layers.thickness", None), "jamming", None))
+diameter = changed(changed(valid, "particles.diameter", {"distribution": "list", "diameters": [0.01]}), "particles.radius", None)
+assert check.is_valid(diameter) and not check.is_valid(changed(diameter, "particles.radius", valid["particles"]["radius"]))
 print(f"{len(scenes)} scenes taken, {len(SLIPS) + 3} slips refused")

@@ -1,4 +1,4 @@
-#include "input/units.hpp"
+#include "tables/units.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,8 @@
 #include <cstdlib>
 
 #include "base/text.hpp"
-#include "input/document.hpp"
 
-namespace packmpi::input {
+namespace packmpi::tables {
 namespace {
 
 constexpr Unit ratios[] = {{"%", -2}};
@@ -47,6 +46,23 @@ std::optional<Decimal> scan_decimal(std::string_view text) {
   return found;
 }
 
+/// The unit as in our lists: "µm" is um, "kg/m^3" and "kg/m³" are kg/m3. The two µ of Unicode look alike.
+std::string plain_unit(std::string_view unit) {
+  struct Spelling {
+    std::string_view written, ours;
+  };
+  constexpr std::array spellings{Spelling{"\xc2\xb5", "u"}, Spelling{"\xce\xbc", "u"}, Spelling{"\xc2\xb3", "3"},
+                                 Spelling{"\xc2\xb2", "2"}, Spelling{"^", ""},         Spelling{"\xc2\xb7", " "},
+                                 Spelling{"*", " "}};
+  std::string text(unit);
+  for (const auto& [written, ours] : spellings) {
+    for (std::size_t at = text.find(written); at != std::string::npos; at = text.find(written, at + ours.size())) {
+      text.replace(at, written.size(), ours);
+    }
+  }
+  return text;
+}
+
 /// 'm, mm or km' of the units of a quantity.
 std::string list(std::span<const Unit> units) {
   std::string words;
@@ -79,8 +95,9 @@ Scalar parse_scalar(std::string_view text, const Quantity& quantity) {
             fmt::format("does not begin with a number; write a number and a unit, such as \"{}\"", quantity.example)};
   }
   const std::string_view unit = text::trimmed(text.substr(decimal->end));
+  const std::string name = plain_unit(unit);
   for (const Unit& known : quantity.units) {
-    if (known.name != unit) continue;
+    if (known.name != name) continue;
     const std::string in_si = fmt::format("{}e{}", text.substr(0, decimal->digits), decimal->exponent + known.exponent);
     double value = 0.0;
     if (std::from_chars(in_si.data(), in_si.data() + in_si.size(), value).ec == std::errc{}) return {value, {}};
@@ -92,6 +109,22 @@ Scalar parse_scalar(std::string_view text, const Quantity& quantity) {
                       list(quantity.units))};
 }
 
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04x}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
 std::string number(double value) {
   std::array<char, 32> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
@@ -100,4 +133,4 @@ std::string number(double value) {
   return text;
 }
 
-}  // namespace packmpi::input
+}  // namespace packmpi::tables

@@ -1,5 +1,5 @@
 // Ensembles: each pack as when run alone, tables, stopping and going on, a pack that fails.
-#include "run/ensemble.hpp"
+#include "ensemble/ensemble.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,10 @@
 #include "report/json_seal.hpp"
 #include "run/make_pack.hpp"
 
-namespace packmpi::run {
+namespace packmpi::ensemble {
 namespace {
+
+using run::Options, run::make_pack;
 
 namespace fs = std::filesystem;
 
@@ -346,4 +348,4 @@ TEST_F(Ensembles, OneAtATimeInAFolder) {
 }
 
 }  // namespace
-}  // namespace packmpi::run
+}  // namespace packmpi::ensemble

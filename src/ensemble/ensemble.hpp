@@ -8,7 +8,7 @@
 #include "input/input.hpp"
 #include "run/options.hpp"
 
-namespace packmpi::run {
+namespace packmpi::ensemble {
 
 /// One pack of an ensemble.
 struct Member {
@@ -28,6 +28,6 @@ struct Member {
 /// if they are what they should be (finished_run(), whose errors are thrown), and stopped ones go on. A pack that fails
 /// does not stop the others. STOP, signals, --max-hours and --max-steps (steps of a group of ranks, pack after pack)
 /// hold for the whole. Returns the worst of the packs' exit codes; throws Error(stopped_early) if the run was stopped.
-[[nodiscard]] int make_ensemble(const comm::Comm& world, const input::Input& in, const Options& options);
+[[nodiscard]] int make_ensemble(const comm::Comm& world, const input::Input& in, const run::Options& options);
 
-}  // namespace packmpi::run
+}  // namespace packmpi::ensemble

@@ -1,11 +1,11 @@
-/// The units a number in a scene file may carry, and numbers as text.
+/// The units a number in a scene file may carry; numbers and words as text.
 #pragma once
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace packmpi::input {
+namespace packmpi::tables {
 
 /// A unit as a power of ten of the SI unit. Only powers of ten: "20 mm" is then read as the decimal 20e-3, rounded
 /// once, and is the same double as 0.02.
@@ -33,7 +33,10 @@ struct Scalar {
 /// Read "20 mm", "1e8 Pa", "40%" as a double in SI units, correctly rounded. Local.
 [[nodiscard]] Scalar parse_scalar(std::string_view text, const Quantity& quantity);
 
+/// `text` as a TOML basic string, on one line.
+[[nodiscard]] std::string toml_string(std::string_view text);
+
 /// The shortest TOML float that reads back as the same double: 0.1, 1000.0, 1e+08.
 [[nodiscard]] std::string number(double value);
 
-}  // namespace packmpi::input
+}  // namespace packmpi::tables

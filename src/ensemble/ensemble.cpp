@@ -1,4 +1,4 @@
-#include "run/ensemble.hpp"
+#include "ensemble/ensemble.hpp"
 
 #include <fmt/core.h>
 
@@ -20,8 +20,11 @@
 #include "run/make_pack.hpp"
 #include "run/signals.hpp"
 
-namespace packmpi::run {
+namespace packmpi::ensemble {
 namespace {
+
+using run::Files, run::files_of, run::is_there, run::Finished, run::finished_run, run::make_pack, run::Options,
+    run::take_lock, run::Signals, run::take_wish, run::Wish;
 
 namespace fs = std::filesystem;
 
@@ -253,4 +256,4 @@ int make_ensemble(const comm::Comm& world, const input::Input& in, const Options
   return code;
 }
 
-}  // namespace packmpi::run
+}  // namespace packmpi::ensemble

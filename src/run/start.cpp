@@ -1,0 +1,187 @@
+#include "run/start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+
+#include "base/log.hpp"
+#include "input/read.hpp"
+#include "observe/measure.hpp"
+#include "pack/pack.hpp"
+#include "report/json_seal.hpp"
+#include "run/scene_change.hpp"
+
+namespace packmpi::run {
+namespace {
+
+[[noreturn]] void refuse(const scene::Scene& scene, const std::string& words) {
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", scene.in.file, words));
+}
+
+std::string path_of(const input::Input& in) {
+  return (std::filesystem::path(in.file).parent_path() / in.start->pack).string();
+}
+
+// The same floor and walls, or particles would be cut or lose their neighbours.
+void check_container(const scene::Scene& scene, const input::Input& source) {
+  const input::Container& now = scene.in.container;
+  const input::Container& before = source.container;
+  if (now.dimension != before.dimension) {
+    refuse(scene, fmt::format("start.pack: is a pack in {}D, the scene is in {}D", before.dimension, now.dimension));
+  }
+  for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
+    if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;
+    refuse(scene, fmt::format("start.pack: is in a container of {:g} m along {} with boundary \"{}\", the scene in one "
+                              "of {:g} m with \"{}\"; give that of the pack",
+                              before.size[axis], "xy"[axis],
+                              before.boundary[axis] == input::Boundary::wall ? "wall" : "periodic", now.size[axis],
+                              now.boundary[axis] == input::Boundary::wall ? "wall" : "periodic"));
+  }
+}
+
+void check_radii(const scene::Scene& scene, double smallest, double largest) {
+  if (smallest >= scene.sizes.smallest() && largest <= scene.sizes.largest()) return;
+  refuse(scene, fmt::format("start.pack: its radii are {:g} to {:g} m, those of the scene {:g} to {:g} m; give "
+                            "particles.radius a range that has both",
+                            smallest, largest, scene.sizes.smallest(), scene.sizes.largest()));
+}
+
+// Do particles feel other forces than where they came to rest?
+bool feels_anew(const input::Input& source, const scene::Scene& scene) {
+  const std::string changes = forbidden_changes(source.effective, scene.in.effective, RunIs::finished);
+  constexpr std::array tables{"contact.",          "jamming.",          "drag.",
+                              "near_field.",       "particles.density", "particles.youngs",
+                              "particles.poisson", "dynamics.rotation"};
+  return std::ranges::any_of(tables, [&](const char* table) {
+    return changes.starts_with(table) || changes.find(fmt::format("; {}", table)) != std::string::npos;
+  });
+}
+
+void add_particles(const pack::PackRows& rows, particles::Store& store) {
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    const Vec3 spin = rows.spin.empty() ? Vec3{} : rows.spin[k];
+    store.add(rows.id[k], rows.position[k], rows.radius[k], rows.velocity[k], spin);
+  }
+}
+
+// The first id of each layer; one layer, if ids do not ascend with layers. Collective.
+std::vector<GlobalId> first_ids_of(const comm::Comm& comm, const pack::PackRows& rows) {
+  constexpr std::int32_t most = 1 << 20;
+  const std::int32_t mine = rows.layer.empty() ? 0 : std::ranges::max(rows.layer);
+  const auto layers = static_cast<std::size_t>(comm.max(std::int64_t{std::min(mine, most)})) + 1;
+  std::vector<std::int64_t> last(layers, -1);  // ids, for the largest of all ranks
+  std::vector<std::int64_t> first(layers,
+                                  std::numeric_limits<std::int64_t>::min());  // negative: the least of all ranks
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    const auto layer = static_cast<std::size_t>(std::min(rows.layer[k], most));
+    first[layer] = std::max(first[layer], -rows.id[k]);
+    last[layer] = std::max(last[layer], rows.id[k]);
+  }
+  comm.max(std::span(first));
+  comm.max(std::span(last));
+  std::vector<GlobalId> ids{0};
+  for (std::size_t layer = 1; layer < layers; ++layer) {
+    if (-first[layer] != last[layer - 1] + 1) return {0};
+    ids.push_back(-first[layer]);
+  }
+  return ids;
+}
+
+// As if its layers had settled.
+void set_progress(Bed& bed, const std::vector<GlobalId>& first_ids) {
+  pack::Progress& at = bed.progress;
+  at.count = bed.comm.sum(std::int64_t{bed.store.owned()});
+  at.first_ids = first_ids;
+  at.height = bed.height();
+  at.energy_given = observe::energy_of(bed.comm, bed.store, bed.scene, 0, at.count);
+  for (std::size_t k = 0; k < first_ids.size(); ++k) {
+    report::LayerRow row;
+    row.total = k + 1 < first_ids.size() ? first_ids[k + 1] : at.count;
+    row.inserted = row.total - first_ids[k];
+    row.stop_reason = taken_over;
+    at.layers.push_back(row);
+  }
+  at.layers.back().height = at.height;
+  at.layers.back().top = bed.top();
+}
+
+// The worst overlap. Throws if it is beyond what may be relaxed.
+double check_overlaps(const Bed& bed) {
+  const scene::Scene& scene = bed.scene;
+  const observe::Validity valid = observe::validity(bed.comm, bed.store, scene);
+  const observe::Contacts touching =
+      observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
+  const double worst = std::max(touching.max_overlap, touching.max_wall_penetration);
+  if (valid.outside > 0)
+    refuse(scene, fmt::format("start.pack: {} particles are outside the container", valid.outside));
+  if (worst > scene.in.start->overlap) {
+    refuse(scene, fmt::format(
+                      "start.pack: its deepest overlap is {:.3g} radii, beyond start.overlap_limit = {:g}; raise that, "
+                      "or give a pack that is at rest",
+                      worst, scene.in.start->overlap));
+  }
+  return worst;
+}
+
+}  // namespace
+
+input::Input with_start(const comm::Comm& comm, input::Input in) {
+  if (!in.start) return in;
+  std::string digest;
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) digest = report::hexadecimal(pack::seal_of(path_of(in)));
+  });
+  digest = comm.broadcast(0, digest);
+  if (!in.start->digest.empty() && in.start->digest != digest) {
+    throw Error(ExitCode::bad_input, fmt::format("{}: start.digest: is {}, and {} has {}; it is another pack", in.file,
+                                                 in.start->digest, in.start->pack, digest));
+  }
+  in.start->digest = digest;
+  in.effective = input::effective_of(in);
+  return in;
+}
+
+void take_over(Bed& bed) {
+  const scene::Scene& scene = bed.scene;
+  const std::string path = path_of(scene.in);
+  const std::uint64_t seal = pack::check_pack(bed.comm, path);
+  pack::PackSlice slice;
+  input::Input source;
+  comm::agree_on(bed.comm, [&] {
+    if (report::hexadecimal(seal) != scene.in.start->digest) refuse(scene, "start.pack: was changed while it was read");
+    slice = pack::read_slice(path, bed.comm.rank(), bed.comm.size());
+    source = input::parse(slice.scene, path, {});
+    check_container(scene, source);
+    for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
+  });
+  add_particles(slice.rows, bed.store);
+  const std::vector<GlobalId> first_ids = first_ids_of(bed.comm, slice.rows);
+  slice = {};
+  bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
+  bed.balance();
+  set_progress(bed, first_ids);
+  const double worst = check_overlaps(bed);
+  if (feels_anew(source, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
+  log::info(fmt::format("start: {}; deepest overlap {:.2e} radii, height {:.4g} m", taken_words(scene, bed.progress),
+                        worst, bed.progress.height));
+}
+
+std::string taken_words(const scene::Scene& scene, const pack::Progress& progress) {
+  if (!scene.in.start) return "";
+  std::int64_t layers = 0, particles = 0;
+  for (const report::LayerRow& row : progress.layers) {
+    if (row.stop_reason != taken_over) continue;
+    ++layers;
+    particles = row.total;
+  }
+  return fmt::format(
+      "{} (digest {}): {} particles in {} layer{} taken over, with positions, radii, velocities{}; not "
+      "taken over: what contacts remember, time and counters",
+      scene.in.start->pack, scene.in.start->digest, particles, layers, layers == 1 ? "" : "s",
+      scene.features.rotation ? " and spins" : "");
+}
+
+}  // namespace packmpi::run

@@ -1,0 +1,28 @@
+/// Going on from a pack that is there: [start].
+#pragma once
+#include <string>
+
+#include "input/input.hpp"
+#include "run/bed.hpp"
+
+namespace packmpi::run {
+
+/// The scene with the digest of the pack that it starts from, which makes it another scene than with another pack; as
+/// it is if it starts from none. Collective. Throws Error(bad_input) if it has the digest of another pack,
+/// Error(io_failure) if there is no such pack.
+[[nodiscard]] input::Input with_start(const comm::Comm& comm, input::Input in);
+
+/// Puts the particles of the pack that the scene starts from into an empty bed, on any number of ranks: ids, positions,
+/// radii, velocities, spins, layers, to the bit. What contacts remember is not in a pack. If forces are others than in
+/// the pack's scene, the final stage comes next, even if no layer does. Collective. Throws Error(bad_input) on all
+/// ranks if the pack does not fit: container, radii, overlaps deeper than start.overlap_limit; Error(io_failure) if it
+/// is damaged. Cost: one reading of the pack, shared by the ranks.
+void take_over(Bed& bed);
+
+/// What was taken over and what was not, "" if nothing was. Local.
+[[nodiscard]] std::string taken_words(const scene::Scene& scene, const pack::Progress& progress);
+
+/// What the layers that were taken over have for their reason to stop.
+inline constexpr const char* taken_over = "taken over";
+
+}  // namespace packmpi::run

@@ -1,0 +1,150 @@
+// Going on from a pack: to the bit where nothing is asked, more layers, another friction, and what does not fit.
+#include "run/start.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "input/read.hpp"
+#include "pack/pack.hpp"
+#include "report/json_seal.hpp"
+#include "run/make_pack.hpp"
+
+namespace packmpi::run {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+// Ten falls a layer: at rest.
+const std::string base =
+    "fidelity = \"balanced\"\n[container]\nsize = [0.3, 0.3, 0.08]\nboundary = [\"periodic\", \"periodic\"]\n"
+    "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e7\npoisson_ratio = 0.25\n"
+    "radius = { distribution = \"equal\", value = 0.02 }\n"
+    "[layers]\nthickness = 0.1\nfraction = 0.2\n[jamming]\ngravity = 9.81\n[contact]\nfriction = 0.4\n"
+    "[checkpoint]\nevery = \"off\"\n";
+
+class Start : public ::testing::Test {
+ protected:
+  const comm::Comm comm_{MPI_COMM_WORLD};
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_start_" + std::to_string(comm_.size()));
+
+  void SetUp() override {
+    if (comm_.rank() == 0) fs::remove_all(folder_), fs::create_directories(folder_);
+    comm_.barrier();
+    (void)make("base", "", {});
+  }
+  report::RunRecord make(const std::string& name, const std::string& more, const std::vector<std::string>& set,
+                         const std::function<void(Options&)>& change = {}) {
+    Options o;
+    o.folder = folder_.string();
+    o.verbosity = log::Verbosity::quiet;
+    o.force = true;
+    if (change) change(o);
+    const std::string path = (folder_ / (name + ".toml")).string();
+    const scene::Scene scene = scene::build(with_start(comm_, input::parse(base + more, path, {set})));
+    report::RunRecord record = make_pack(comm_, scene, o);
+    comm_.barrier();
+    return record;
+  }
+  report::RunRecord go_on(const std::vector<std::string>& set, const std::function<void(Options&)>& change = {}) {
+    return make("next", "[start]\npack = \"base.hdf\"\n", set, change);
+  }
+  std::string complaint(const std::vector<std::string>& set) {
+    try {
+      (void)go_on(set);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return error.what();
+    }
+    return "";
+  }
+  [[nodiscard]] pack::PackRows rows(const std::string& name) const {
+    return pack::read_pack((folder_ / (name + ".hdf")).string());
+  }
+};
+
+void expect_equal(const pack::PackRows& a, const pack::PackRows& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.spin, b.spin);
+  EXPECT_EQ(a.layer, b.layer);
+  EXPECT_EQ(a.contacts, b.contacts);
+}
+
+TEST_F(Start, WithNothingAskedItIsEqualToTheBit) {
+  const report::RunRecord record = go_on({});
+  EXPECT_EQ(record.steps, 0);
+  EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
+  expect_equal(rows("next"), rows("base"));
+  const std::string digest = report::hexadecimal(pack::seal_of((folder_ / "base.hdf").string()));
+  EXPECT_THAT(record.start, HasSubstr("base.hdf (digest " + digest + "): "));
+  EXPECT_THAT(record.effective_input, HasSubstr("digest = \"" + digest + "\""));
+  EXPECT_EQ(record.layers.front().stop_reason, "taken over");
+}
+
+TEST_F(Start, GoesOnWithMoreLayers) {
+  const pack::PackRows before = rows("base");
+  const report::RunRecord record = go_on({"container.size=[0.3, 0.3, 0.14]"});
+  EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
+  EXPECT_GE(record.height, 0.14);
+  const pack::PackRows after = rows("next");
+  ASSERT_GT(after.id.size(), before.id.size());
+  EXPECT_TRUE(std::equal(before.radius.begin(), before.radius.end(), after.radius.begin()));
+  EXPECT_TRUE(std::equal(before.layer.begin(), before.layer.end(), after.layer.begin()));
+  EXPECT_EQ(record.layers[static_cast<std::size_t>(before.layer.back())].total, std::ssize(before.id));
+  // As high as one made at once, of as many layers: the same names, so the same particles were inserted.
+  const report::RunRecord once = make("once", "", {"container.size=[0.3, 0.3, 0.14]"});
+  for (std::size_t k = 0; k < std::min(record.layers.size(), once.layers.size()); ++k)
+    EXPECT_EQ(record.layers[k].inserted, once.layers[k].inserted) << k;
+  EXPECT_NEAR(record.phi_bulk, once.phi_bulk, 0.02) << "a few hundred spheres";
+}
+
+TEST_F(Start, AStoppedRunNeedsNoSecondStart) {
+  (void)go_on({"container.size=[0.3, 0.3, 0.14]"});
+  const pack::PackRows target = rows("next");
+  EXPECT_THROW((void)go_on({"container.size=[0.3, 0.3, 0.14]"}, [](Options& o) { o.max_steps = 100; }),
+               comm::AgreedError);
+  const report::RunRecord record = go_on({"container.size=[0.3, 0.3, 0.14]"}, [](Options& o) {
+    o.force = false;
+    o.restart = "auto";
+  });
+  EXPECT_THAT(record.start, HasSubstr("taken over"));
+  expect_equal(rows("next"), target);
+}
+
+TEST_F(Start, UnderOtherForcesItComesToRestAgain) {
+  const report::RunRecord record = go_on({"contact.friction=0.1"});
+  EXPECT_GT(record.steps, 0);
+  EXPECT_EQ(record.layers.size(), make("base", "", {}).layers.size()) << "no layer was added";
+}
+
+TEST_F(Start, WhatDoesNotFitIsRefused) {
+  const std::string next = (folder_ / "next.toml").string() + ": start.pack: ";
+  EXPECT_EQ(complaint({"container.size=[0.4, 0.3, 0.1]"}),
+            next +
+                "is in a container of 0.3 m along x with boundary \"periodic\", the scene in one of 0.4 m with "
+                "\"periodic\"; give that of the pack");
+  EXPECT_EQ(complaint({"container.boundary=[\"periodic\", \"wall\"]"}),
+            next +
+                "is in a container of 0.3 m along y with boundary \"periodic\", the scene in one of 0.3 m with "
+                "\"wall\"; give that of the pack");
+  EXPECT_EQ(complaint({"particles.radius.value=0.019"}),
+            next +
+                "its radii are 0.02 to 0.02 m, those of the scene 0.019 to 0.019 m; give particles.radius a range "
+                "that has both");
+  EXPECT_THAT(complaint({"start.overlap_limit=1e-9"}),
+              HasSubstr(", beyond start.overlap_limit = 1e-09; raise that, or give a pack "
+                        "that is at rest"));
+  EXPECT_THAT(complaint({"start.digest=0123456789abcdef"}),
+              HasSubstr(": start.digest: is 0123456789abcdef, and base.hdf has "));
+  EXPECT_THROW((void)go_on({"start.pack=no.hdf"}), Error);
+}
+
+}  // namespace
+}  // namespace packmpi::run
