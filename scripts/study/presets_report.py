@@ -141,6 +141,7 @@ def plot(path, rows, scenes):
                 axes.errorbar(values, lines, xerr=errors, fmt=marker, color=colour, markersize=4, linewidth=1, label=setting)
         if key in shown:
             axes.set_xlim(-shown[key], shown[key])
+            axes.locator_params(axis="x", nbins=4)
         bound = BOUNDS["balanced"].get(key)
         if bound:
             axes.axvspan(-bound, bound, color=TARGET, alpha=0.14, linewidth=0)
