@@ -99,11 +99,11 @@ constexpr Condition bounded{"distribution = \"gaussian\", \"uniform\", \"lognorm
                               return is(in, SizeDistribution::gaussian) || is(in, SizeDistribution::uniform) ||
                                      is(in, SizeDistribution::lognormal) || is(in, SizeDistribution::weibull);
                             }};
-constexpr Condition list{"distribution = \"list\"", [](const Input& in) { return is(in, SizeDistribution::list); }};
+constexpr Condition listed{"distribution = \"list\"", [](const Input& in) { return is(in, SizeDistribution::list); }};
 constexpr Condition several{"distribution = \"discrete\" or \"list\"",
-                            [](const Input& in) { return discrete.holds(in) || list.holds(in); }};
+                            [](const Input& in) { return discrete.holds(in) || listed.holds(in); }};
 constexpr Condition graded{"distributions other than \"equal\" and \"list\"",
-                           [](const Input& in) { return !equal.holds(in) && !list.holds(in); }};
+                           [](const Input& in) { return !equal.holds(in) && !listed.holds(in); }};
 constexpr Condition layered{"layers.duration above 0", [](const Input& in) { return !insertion_alone(in); }};
 constexpr Condition by_fraction{"layers.duration above 0 or scenes without particles.count",
                                 [](const Input& in) { return layered.holds(in) || in.particles.count == 0; }};
@@ -188,9 +188,9 @@ std::vector<Key> radius_keys() {
          "Share of the large particles, by the weighting.")),
     when(several, reals("particles.radius.radii", at_radius(&Radius::radii), Count::any, length, above(0), "[]",
          "The radii there are: of classes, ascending; of a list, in any order, each used once.")),
-    when(list, word("particles.radius.list_file", at_radius(&Radius::list_file), R"("")",
+    when(listed, word("particles.radius.list_file", at_radius(&Radius::list_file), R"("")",
          "The list as a CSV file in the scene's folder, one size a line; its first line is `diameter_mm` or `radius_mm`.")),
-    when(list, word("particles.radius.order", at_radius(&Radius::order), R"("random")",
+    when(listed, word("particles.radius.order", at_radius(&Radius::order), R"("random")",
          "Order in which the list is inserted, layer by layer: shuffled by the seed, or as in the file. Particle k of the pack is number k of this order.")),
     when(discrete, reals("particles.radius.shares", at_radius(&Radius::shares), Count::any, plain, above(0), mandatory,
          "The share of each radius, by the weighting; only their ratios count.")),

@@ -33,7 +33,7 @@ std::vector<std::string> names_in(std::string_view table) {
   return names;
 }
 
-std::string list(const std::vector<std::string>& names) {
+std::string in_words(const std::vector<std::string>& names) {
   return joined(std::vector<std::string_view>(names.begin(), names.end()), "and");
 }
 
@@ -48,7 +48,7 @@ std::string suggestion(const std::string& table, const std::string& name) {
                           : fmt::format("\"{}\" belongs into [{}]", name, home);
   }
   const std::string where = table.empty() ? "a scene has" : fmt::format("[{}] has", table);
-  return fmt::format("{} {}", where, list(siblings));
+  return fmt::format("{} {}", where, in_words(siblings));
 }
 
 /// A name as it would be written in TOML; control characters escaped, so that it stays on one line.
@@ -100,7 +100,7 @@ void refuse_unknown(const Table& table, const std::string& path) {
     const auto* inner = std::get_if<Table>(&entry.node.value);
     if (inner == nullptr) {
       fail(entry.node.place, here,
-           fmt::format("is {}; give a table with {}", describe(entry.node), list(names_in(here))));
+           fmt::format("is {}; give a table with {}", describe(entry.node), in_words(names_in(here))));
     }
     refuse_unknown(*inner, here);
   }
