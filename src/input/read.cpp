@@ -219,12 +219,12 @@ void take_list(const Document& document, const std::optional<CurveFile>& file, I
     in.remarks.push_back(std::move(list.reading));
     radius.list_file.clear();
   }
-  const auto listed = std::ssize(radius.radii);
-  if (in.particles.count != 0 && in.particles.count != listed) {
+  const auto sizes = std::ssize(radius.radii);
+  if (in.particles.count != 0 && in.particles.count != sizes) {
     fail(document.place("particles.count"), "particles.count",
-         fmt::format("is {}, and the list has {} sizes, each for one particle; remove it", in.particles.count, listed));
+         fmt::format("is {}, and the list has {} sizes, each for one particle; remove it", in.particles.count, sizes));
   }
-  in.particles.count = listed;
+  in.particles.count = sizes;
 }
 
 /// The damping ratio that a restitution stands for. A scene that was written with every default filled in has both.
