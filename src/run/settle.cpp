@@ -18,11 +18,11 @@ namespace {
 constexpr double rate_share = 0.1;
 // Looks whether the bed is at rest in the time that the final stage waits for it at most.
 constexpr int windows_a_wait = 50;
-// A bed that is not after two falls through H_d swings as a whole, and its contacts damp that so little that it would
+// A bed that is not after four falls through H_d swings as a whole, and its contacts damp that so little that it would
 // swing for longer than all layers took. From then on particles are stopped again and again: kinetic damping, as in
 // dynamic relaxation (Cundall 1976). Stops come after 2^-5 to 2^-2 of a window and at its end, so that no swing is in
 // step with them all; then all move freely until the bed is looked at.
-constexpr int free_windows = 10;
+constexpr int free_windows = 20;
 constexpr int most_halvings = 5, least_halvings = 2;
 // Looks at the criteria of stop = "settled" in the time for which they must hold.
 constexpr int looks_a_hold = 10;

@@ -385,7 +385,7 @@ TEST(Rest, AHighBedThatSwingsIsStopped) {
   in.rest.wait = 6.0;
   const report::RunRecord stopped = pack(in);
   EXPECT_THAT(stopped.missed, IsEmpty());
-  EXPECT_GT(stopped.relaxation_steps, 6000) << "it is left alone for two falls";
+  EXPECT_GT(stopped.relaxation_steps, 6000) << "it is left alone for four falls";
   EXPECT_LT(2 * stopped.relaxation_steps, swings.relaxation_steps);
   EXPECT_NEAR(stopped.phi_bulk, swings.phi_bulk, 0.002) << "the same bed";
 }

@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from run import Run, HERE
+from run import Run, HERE, with_arguments
 
 MASK = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-AVX,-FMA,-FMA4", "PACKMPI_ARCH": "x86-64"}
 # Areas of discs; powers that are no halves; the mean of a Gaussian; softness, window and analysis of graded spheres.
@@ -55,7 +55,7 @@ def main() -> int:
     for name in SCENES:
         scene = HERE / f"{name}.toml"
         text = scene.read_text() + "[output]\nanalysis = true\n"
-        runs = [left(Run(scene, text, folder / part / name, ["env", *(f"{k}={v}" for k, v in mask.items()), *command]))
+        runs = [left(Run(scene, text, folder / part / name, ["env", *(f"{k}={v}" for k, v in mask.items()), *command], with_arguments(scene)))
                 for part, mask in (("here", {}), ("masked", MASK))]
         for what in runs[0]:
             if runs[0][what] != runs[1][what]:
