@@ -15,6 +15,12 @@ using scene::Features;
 Vec3 array_of(const Vector& a) { return {a.x, a.y, a.z}; }
 Vector vector_of(const Vec3& a) { return {a[0], a[1], a[2]}; }
 
+/// In the plane they are numbers: along the tangent (-n_y, n_x), and about z.
+SpringDisplacements displacements(int dimension, const Vector& n, const plain::Springs& x) {
+  if (dimension == 3) return {array_of(x.slip), array_of(x.roll), x.twist};
+  return {{-(n.y * x.slip.x), n.x * x.slip.x, 0.0}, {0.0, 0.0, x.roll.x}, 0.0};
+}
+
 template <Features F>
 ContactEffect resolve(const plain::Constants& c, Meeting at, const StoredView& stored, std::int64_t entry) {
   double values[scene::most_stored_doubles] = {};
@@ -26,7 +32,9 @@ ContactEffect resolve(const plain::Constants& c, Meeting at, const StoredView& s
   const double stiffness = c.shear_stiffness * plain::root(at.reduced.radius * at.overlap);
   const plain::Springs& x = f.springs;  // in a step of no duration nothing but their planes has changed
   const double energy = 0.5 * stiffness * (dot(x.slip, x.slip) + dot(x.roll, x.roll) + x.twist * x.twist);
-  return {array_of(f.force), array_of(f.torque), f.strength, F.memory ? energy : 0.0};
+  ContactEffect effect{array_of(f.force), array_of(f.torque), f.strength, 0.0, {}};
+  if (F.memory) effect.spring_energy = energy, effect.springs = displacements(F.dimension, at.n, x);
+  return effect;
 }
 
 template <int Dimension>

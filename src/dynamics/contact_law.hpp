@@ -22,12 +22,20 @@ struct StoredView {
   return {neighborhood.memory().of_walls(), std::ssize(neighborhood.walls().particle)};
 }
 
+/// The displacements of a contact's springs [m], in the plane of now, oriented from the first end to the second: the
+/// tangential one, that of rolling along the axis about which the second turns, and the angle of twisting times r*.
+struct SpringDisplacements {
+  Vec3 tangential{}, rolling{};
+  double twisting = 0.0;
+};
+
 /// What a contact does now.
 struct ContactEffect {
   Vec3 force{};                ///< [N] on the first: normal, friction and the dashpots'
   Vec3 torque{};               ///< [N m] on the first, of rolling and twisting resistance; its negative on the second
   double normal = 0.0;         ///< [N] magnitude of the normal force before its sign
   double spring_energy = 0.0;  ///< [J] in the tangential, rolling and twisting springs
+  SpringDisplacements springs{};
 };
 
 /// Of two particles that touch or not (then all is zero, but for what a law does without overlap). `entry` of `stored`

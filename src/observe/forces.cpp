@@ -18,6 +18,21 @@ Vec3 middle(const geometry::Container& box, const Vec3& from, const Vec3& branch
   return x;
 }
 
+Vec3 negative(const Vec3& a) { return {-a[0], -a[1], -a[2]}; }
+
+/// As the other end has it.
+void turn(dynamics::ContactEffect& effect) {
+  effect.force = negative(effect.force);
+  effect.springs.tangential = negative(effect.springs.tangential);
+  effect.springs.rolling = negative(effect.springs.rolling);
+}
+
+void sort_by_ends(std::vector<ContactForce>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const ContactForce& a, const ContactForce& b) {
+    return std::tie(a.first, a.second) < std::tie(b.first, b.second);
+  });
+}
+
 }  // namespace
 
 void each_contact(const particles::Store& store, const scene::Scene& scene, const neighbor::PairList& pairs,
@@ -33,12 +48,19 @@ void each_contact(const particles::Store& store, const scene::Scene& scene, cons
     const Touch at = touch(store, scene.container, i, j);
     if (!(at.overlap > 0.0)) continue;
     const auto entry = static_cast<std::int64_t>(p);
-    Vec3 force = dynamics::pair_contact(scene, law, store, pairs.first[p], pairs.second[p], stored, entry).force;
-    if (turned) force = {-force[0], -force[1], -force[2]};
+    dynamics::ContactEffect effect =
+        dynamics::pair_contact(scene, law, store, pairs.first[p], pairs.second[p], stored, entry);
+    if (turned) turn(effect);
     const Vec3 xi = store.position(i);
     const Vec3 branch = geometry::separation(scene.container, xi, store.position(j));
-    take({ids[static_cast<std::size_t>(i)], ids[static_cast<std::size_t>(j)], at.overlap, force, branch,
-          middle(scene.container, xi, branch)});
+    take({.first = ids[static_cast<std::size_t>(i)],
+          .second = ids[static_cast<std::size_t>(j)],
+          .overlap = at.overlap,
+          .force = effect.force,
+          .branch = branch,
+          .middle = middle(scene.container, xi, branch),
+          .normal = at.normal,
+          .springs = effect.springs});
   }
 }
 
@@ -46,9 +68,29 @@ std::vector<ContactForce> contact_forces(const particles::Store& store, const sc
                                          const neighbor::PairList& pairs, const dynamics::StoredView& stored) {
   std::vector<ContactForce> rows;
   each_contact(store, scene, pairs, stored, [&](const ContactForce& contact) { rows.push_back(contact); });
-  std::sort(rows.begin(), rows.end(), [](const ContactForce& a, const ContactForce& b) {
-    return std::tie(a.first, a.second) < std::tie(b.first, b.second);
-  });
+  sort_by_ends(rows);
+  return rows;
+}
+
+std::vector<ContactForce> wall_forces(const particles::Store& store, const scene::Scene& scene,
+                                      const neighbor::WallList& walls, const dynamics::StoredView& stored) {
+  const dynamics::Law law = dynamics::make_law(scene);
+  std::vector<ContactForce> rows;
+  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
+    const LocalIndex i = walls.particle[w];
+    const neighbor::Wall wall = walls.wall[w];
+    const double overlap = wall_penetration(store, scene.container, i, wall);
+    if (!(overlap > 0.0)) continue;
+    const dynamics::ContactEffect effect =
+        dynamics::wall_contact(scene, law, store, i, wall, stored, static_cast<std::int64_t>(w));
+    rows.push_back({.first = store.ids()[static_cast<std::size_t>(i)],
+                    .second = neighbor::wall_partner(wall),
+                    .overlap = overlap,
+                    .force = effect.force,
+                    .normal = scene.container.plane(wall).normal(),
+                    .springs = effect.springs});
+  }
+  sort_by_ends(rows);
   return rows;
 }
 

@@ -107,13 +107,15 @@ struct Validity {
 };
 [[nodiscard]] Validity validity(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
-/// The force of one contact, for /contacts of the pack file.
+/// The force of one contact, for /contacts and /wall_contacts of the pack file.
 struct ContactForce {
-  GlobalId first, second;  ///< first < second
-  double overlap;          ///< [m]
-  Vec3 force;              ///< [N] on the first: normal and friction, without near field
-  Vec3 branch{};           ///< [m] from the centre of the first to that of the second
-  Vec3 middle{};           ///< [m] the point half-way, inside periodic axes
+  GlobalId first, second;                   ///< first < second; of a wall: the particle, and neighbor::wall_partner
+  double overlap;                           ///< [m]
+  Vec3 force;                               ///< [N] on the first: normal and friction, without near field
+  Vec3 branch{};                            ///< [m] from the centre of the first to that of the second; not of walls
+  Vec3 middle{};                            ///< [m] the point half-way, inside periodic axes; not of walls
+  Vec3 normal{};                            ///< unit vector from the first to the second
+  dynamics::SpringDisplacements springs{};  ///< zero without memory
 };
 /// Calls take(contact) for each touching pair whose smaller id is owned here, in the order of the list. Local; cost
 /// O(pairs). `stored`: what the pairs remember; without it friction with memory is its dashpot's alone.
@@ -124,6 +126,11 @@ void each_contact(const particles::Store& store, const scene::Scene& scene, cons
 [[nodiscard]] std::vector<ContactForce> contact_forces(const particles::Store& store, const scene::Scene& scene,
                                                        const neighbor::PairList& pairs,
                                                        const dynamics::StoredView& stored = {});
+
+/// The same of the walls that owned particles touch, sorted by particle and wall; `stored` is what walls remember.
+[[nodiscard]] std::vector<ContactForce> wall_forces(const particles::Store& store, const scene::Scene& scene,
+                                                    const neighbor::WallList& walls,
+                                                    const dynamics::StoredView& stored = {});
 
 /// Normal force between the floor and the particles on it [N]; equals their weight at rest. Collective.
 [[nodiscard]] double floor_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,

@@ -9,8 +9,6 @@
 
 namespace packmpi::pack {
 
-inline constexpr GlobalId most_walls = 5;  ///< of a container: see geometry::Surface
-
 /// What the contacts in the file have stored; without memory: there are none in it. Local.
 [[nodiscard]] scene::Features stored_in(const disk::SealedFile& file, int dimension);
 /// This rank's share of the rows in the file, wherever their particles are. Local. Throws Error(bad_checkpoint), words

@@ -18,12 +18,15 @@ void write_pack(const comm::Comm& comm, const std::string& path, const PackParts
 }
 
 std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,
-                        std::optional<std::int64_t> contacts, std::int64_t columns) {
+                        std::optional<ContactCounts> contacts, std::int64_t columns) {
   PackBlock block;
   block.rotation = rotation;
   block.particles = {static_cast<hsize_t>(particles), 0, 0};
   block.has_contacts = contacts.has_value();
-  block.contacts = {static_cast<hsize_t>(contacts.value_or(0)), 0, 0};
+  const ContactCounts counts = contacts.value_or(ContactCounts{});
+  block.contacts = {static_cast<hsize_t>(counts.pairs), 0, 0};
+  block.walls = {static_cast<hsize_t>(counts.walls), 0, 0};
+  block.features = counts.features;
   const observe::ColumnMaps maps;
   if (columns > 0) block.maps = &maps;
   block.columns = {static_cast<hsize_t>(columns), 0, 0};

@@ -18,8 +18,14 @@ namespace packmpi::pack {
 inline constexpr std::int64_t pack_version = 2;
 inline constexpr std::int64_t oldest_pack_version = 1;  ///< that can be read
 
-/// One contact for /contacts.
+/// One contact for /contacts or /wall_contacts.
 using ContactRow = observe::ContactForce;
+
+/// How many contacts a pack has, and what they remember.
+struct ContactCounts {
+  std::int64_t pairs = 0, walls = 0;
+  scene::Features features{};  ///< memory and rolling of them
+};
 
 /// What this rank contributes to a pack.
 struct PackParts {
@@ -28,6 +34,8 @@ struct PackParts {
   std::span<const std::int32_t> contacts;   ///< touching particles of the owned, in slot order
   const std::vector<ContactRow>* contact_rows = nullptr;  ///< none: no /contacts; on all ranks or on none
   const observe::ColumnMaps* maps = nullptr;              ///< none: no /columns; on all ranks or on none
+  const std::vector<ContactRow>* wall_rows = nullptr;     ///< with contact_rows, of walls
+  scene::Features features{};                             ///< memory and rolling: what contacts remember
 };
 
 /// Collective. Writes PATH (NAME.hdf): to PATH.tmp, flushed, fsync'ed, renamed. Rows sorted by id whatever the ranks;
@@ -40,7 +48,7 @@ void write_pack(const comm::Comm& comm, const std::string& path, const PackParts
 /// Bytes of the file that write_pack() would write of so many particles, contacts (none: no /contacts) and columns of
 /// the maps (0: no /columns). Rank-local. Throws Error(io_failure).
 [[nodiscard]] std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,
-                                      std::optional<std::int64_t> contacts, std::int64_t columns);
+                                      std::optional<ContactCounts> contacts, std::int64_t columns);
 
 /// Rows of a pack, sorted by id.
 struct PackRows {

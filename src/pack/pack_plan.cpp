@@ -48,6 +48,17 @@ disk::h5::Slab slab_of(const comm::Comm& comm, std::size_t count) {
   return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), count};
 }
 
+/// Collective. To the ranks that write them, in the order of the file; null: none.
+std::vector<ContactRow> bring_contacts(const comm::Comm& comm, const disk::IdBlocks& blocks,
+                                       const std::vector<ContactRow>* rows) {
+  std::vector<ContactRow> mine =
+      scatter(comm, blocks, rows != nullptr ? *rows : std::vector<ContactRow>{}, &ContactRow::first);
+  std::ranges::sort(mine, [](const ContactRow& a, const ContactRow& b) {
+    return std::tie(a.first, a.second) < std::tie(b.first, b.second);
+  });
+  return mine;
+}
+
 void add_particles(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
   const auto& rows = block.rows;
   const disk::h5::Slab& slab = block.particles;
@@ -70,17 +81,35 @@ void add_particles(const PackBlock& block, std::vector<disk::h5::Column>& plan) 
                                                      [](const Row& r) { return r.contacts; }));
 }
 
-void add_contacts(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
-  const auto& rows = block.contact_rows;
-  const disk::h5::Slab& slab = block.contacts;
+/// What pairs and walls have alike, into `group`. The names are those of scene::storings.
+void add_forces(const std::string& group, const disk::h5::Slab& slab, const std::vector<ContactRow>& rows,
+                const scene::Features& features, std::vector<disk::h5::Column>& plan) {
   using Row = ContactRow;
-  plan.push_back(disk::h5::make_column<std::int64_t>("/contacts/pair", "", slab, rows, [](const Row& r) {
-    return std::array<std::int64_t, 2>{r.first, r.second};
-  }));
+  const auto add = [&](const char* name, const char* unit, auto value) {
+    plan.push_back(disk::h5::make_column<double>(group + name, unit, slab, rows, value));
+  };
+  add("overlap", "m", [](const Row& r) { return r.overlap; });
+  add("normal", "-", [](const Row& r) { return r.normal; });
+  add("force", "N", [](const Row& r) { return r.force; });
+  if (features.memory) add("tangential_displacement", "m", [](const Row& r) { return r.springs.tangential; });
+  if (!features.rolling) return;
+  add("rolling_displacement", "m", [](const Row& r) { return r.springs.rolling; });
+  add("twisting_displacement", "m", [](const Row& r) { return r.springs.twisting; });
+}
+
+void add_contacts(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
+  using Row = ContactRow;
   plan.push_back(
-      disk::h5::make_column<double>("/contacts/overlap", "m", slab, rows, [](const Row& r) { return r.overlap; }));
-  plan.push_back(
-      disk::h5::make_column<double>("/contacts/force", "N", slab, rows, [](const Row& r) { return r.force; }));
+      disk::h5::make_column<std::int64_t>("/contacts/pair", "", block.contacts, block.contact_rows, [](const Row& r) {
+        return std::array<std::int64_t, 2>{r.first, r.second};
+      }));
+  add_forces("/contacts/", block.contacts, block.contact_rows, block.features, plan);
+  plan.push_back(disk::h5::make_column<std::int64_t>("/wall_contacts/particle", "", block.walls, block.wall_rows,
+                                                     [](const Row& r) { return r.first; }));
+  plan.push_back(disk::h5::make_column<std::int32_t>(
+      "/wall_contacts/wall", "", block.walls, block.wall_rows,
+      [](const Row& r) { return static_cast<std::int32_t>(neighbor::wall_partner(neighbor::Wall{}) - r.second); }));
+  add_forces("/wall_contacts/", block.walls, block.wall_rows, block.features, plan);
 }
 
 void add_maps(const PackBlock& block, std::vector<disk::h5::Column>& plan) {
@@ -168,10 +197,11 @@ PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
 
   block.has_contacts = parts.contact_rows != nullptr;
   if (block.has_contacts) {
-    block.contact_rows = scatter(comm, blocks, *parts.contact_rows, &ContactRow::first);
-    std::sort(block.contact_rows.begin(), block.contact_rows.end(),
-              [](const auto& a, const auto& b) { return std::tie(a.first, a.second) < std::tie(b.first, b.second); });
+    block.features = parts.features;
+    block.contact_rows = bring_contacts(comm, blocks, parts.contact_rows);
     block.contacts = slab_of(comm, block.contact_rows.size());
+    block.wall_rows = bring_contacts(comm, blocks, parts.wall_rows);
+    block.walls = slab_of(comm, block.wall_rows.size());
   }
   block.maps = parts.maps;
   if (block.maps != nullptr) block.columns = slab_of(comm, block.maps->top.size());
@@ -191,7 +221,10 @@ void write_frame(hid_t file, const PackBlock& block, const std::vector<disk::h5:
   disk::h5::set_attribute(file, "format", std::string("packmpi-pack"));
   disk::h5::set_attribute(file, "format_version", pack_version);
   (void)disk::h5::create_group(file, "/particles");
-  if (block.has_contacts) (void)disk::h5::create_group(file, "/contacts");
+  if (block.has_contacts) {
+    (void)disk::h5::create_group(file, "/contacts");
+    (void)disk::h5::create_group(file, "/wall_contacts");
+  }
   if (block.maps != nullptr) {
     const disk::h5::Handle columns = disk::h5::create_group(file, "/columns");
     disk::h5::set_attribute(columns.get(), "counts",

@@ -24,8 +24,10 @@ struct PackBlock {
   std::vector<ParticleRow> rows;  // by id, without gap
   bool has_contacts = false;
   disk::h5::Slab contacts{};
-  std::vector<ContactRow> contact_rows;       // by (first, second)
-  const observe::ColumnMaps* maps = nullptr;  // not owned; none: no /columns
+  disk::h5::Slab walls{};
+  std::vector<ContactRow> contact_rows, wall_rows;  // by (first, second)
+  scene::Features features{};                       // memory and rolling of the contacts
+  const observe::ColumnMaps* maps = nullptr;        // not owned; none: no /columns
   disk::h5::Slab columns{};
 };
 

@@ -158,12 +158,12 @@ void fill(Bed& bed, Journal& journal, Keeper& keeper) {
 void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record) {
   const observe::Contacts contacts =
       observe::contacts(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
-  std::vector<pack::ContactRow> rows;
-  if (bed.scene.in.output.contacts) {
-    for (const observe::ContactForce& c : observe::contact_forces(bed.store, bed.scene, bed.neighborhood.pairs(),
-                                                                  dynamics::stored_pairs(bed.neighborhood))) {
-      rows.push_back({c.first, c.second, c.overlap, c.force});
-    }
+  const bool with_contacts = bed.scene.in.output.contacts;
+  std::vector<pack::ContactRow> rows, wall_rows;
+  if (with_contacts) {
+    const neighbor::Neighborhood& near = bed.neighborhood;
+    rows = observe::contact_forces(bed.store, bed.scene, near.pairs(), dynamics::stored_pairs(near));
+    wall_rows = observe::wall_forces(bed.store, bed.scene, near.walls(), dynamics::stored_walls(near));
   }
   const std::vector<std::int32_t> layers = bed.layers();
   const observe::ColumnMaps maps = observe::column_maps(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(),
@@ -171,8 +171,10 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
   const pack::PackParts parts{.store = &bed.store,
                               .layer = layers,
                               .contacts = contacts.of_particle,
-                              .contact_rows = bed.scene.in.output.contacts ? &rows : nullptr,
-                              .maps = &maps};
+                              .contact_rows = with_contacts ? &rows : nullptr,
+                              .maps = &maps,
+                              .wall_rows = &wall_rows,
+                              .features = bed.scene.features};
   pack::write_pack(bed.comm, files.pack, parts, record);
   comm::agree_on(bed.comm, [&] {
     if (bed.comm.rank() == 0) record.pack_seal = pack::seal_of(files.pack);

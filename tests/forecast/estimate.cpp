@@ -11,6 +11,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "disk/sealed_file.hpp"
 #include "input/read.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
@@ -66,6 +67,13 @@ class Estimates : public ::testing::Test {
     comm_.barrier();
   }
 
+  /// Of the pack there is, with so many between particles.
+  [[nodiscard]] pack::ContactCounts counts_of(std::int64_t pairs, const Set& set) const {
+    const disk::SealedFile file(folder_ / "brick.hdf");
+    const auto walls = static_cast<std::int64_t>(file.extent<std::int64_t>("/wall_contacts/particle").at(0));
+    EXPECT_GT(walls, 0);
+    return {.pairs = pairs, .walls = walls, .features = scene(set).features};
+  }
   [[nodiscard]] run::Options options(const Set& set = {}) const {
     run::Options options;
     options.scene = folder_ / "brick.toml";
@@ -138,8 +146,20 @@ TEST_F(Estimates, CheckpointsAndContactsAreAsLong) {
   const std::int64_t contacts =
       std::llround(0.5 * record.rest.network.coordination * static_cast<double>(record.particles));
   EXPECT_GT(contacts, 0);
-  EXPECT_EQ(pack::pack_bytes(record, true, record.particles, contacts, observe::map_columns(scene(set))),
-            static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
+  EXPECT_EQ(
+      pack::pack_bytes(record, true, record.particles, counts_of(contacts, set), observe::map_columns(scene(set))),
+      static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
+}
+
+TEST_F(Estimates, PacksOfContactsThatRememberAreAsLong) {
+  const Set set{"container.size=[0.5,0.5,0.06]", "layers.thickness=0.3",       "layers.duration=0.1",
+                "output.contacts=true",          "contact.tangential=mindlin", "contact.rolling_friction=0.1"};
+  const report::RunRecord record = run::make_pack(comm_, scene(set), options());
+  const std::int64_t contacts =
+      std::llround(0.5 * record.rest.network.coordination * static_cast<double>(record.particles));
+  EXPECT_EQ(
+      pack::pack_bytes(record, true, record.particles, counts_of(contacts, set), observe::map_columns(scene(set))),
+      static_cast<std::int64_t>(fs::file_size(folder_ / "brick.hdf")));
 }
 
 TEST_F(Estimates, EveryQuestionIsTheOthersAnswer) {

@@ -151,7 +151,7 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   const std::string scene = "seed = 7\n[container]\nsize = [1.0, 1.0]\n";
   if (sample.pack) {
     const std::vector<std::int32_t> numbers(particle_count, 1);
-    const std::vector<pack::ContactRow> contacts{{0, 1, 0.001, {1.0, 2.0, 3.0}}};
+    const std::vector<pack::ContactRow> contacts{{.first = 0, .second = 1, .overlap = 0.001, .force = {1.0, 2.0, 3.0}}};
     report::RunRecord record;
     record.effective_input = scene;
     record.dimension = sample.dimension;

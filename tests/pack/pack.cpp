@@ -150,9 +150,26 @@ TEST_F(Pack, DatasetsDoNotDependOnTheSpread) {
     if (comm_.rank() == 0) {
       const File a(reference);
       const File b(other);
-      for (const char* path : {"/particles/id", "/particles/position", "/particles/radius", "/particles/velocity",
-                               "/particles/spin", "/particles/layer", "/particles/contacts", "/contacts/pair",
-                               "/contacts/overlap", "/contacts/force", "/VTKHDF/Offsets", "/summary/layers/height"}) {
+      for (const char* path : {"/particles/id",
+                               "/particles/position",
+                               "/particles/radius",
+                               "/particles/velocity",
+                               "/particles/spin",
+                               "/particles/layer",
+                               "/particles/contacts",
+                               "/contacts/pair",
+                               "/contacts/overlap",
+                               "/contacts/normal",
+                               "/contacts/force",
+                               "/contacts/tangential_displacement",
+                               "/contacts/rolling_displacement",
+                               "/contacts/twisting_displacement",
+                               "/wall_contacts/particle",
+                               "/wall_contacts/wall",
+                               "/wall_contacts/force",
+                               "/wall_contacts/tangential_displacement",
+                               "/VTKHDF/Offsets",
+                               "/summary/layers/height"}) {
         EXPECT_EQ(a.bytes(path), b.bytes(path)) << path;
       }
     }
@@ -165,7 +182,7 @@ TEST_F(Pack, ContactsAreSortedByPair) {
   const auto grains = testing::some_grains(count, 3);
   const std::string path = write("pack.hdf", particles::layout_of(3, true), grains, Spread::some, true);
   if (comm_.rank() != 0) return;
-  std::string pair, overlap, force;
+  std::string pair, overlap, force, normal, slip, roll, twist, walls, of, wall_overlap;
   for (GlobalId id = 0; id < static_cast<GlobalId>(count); ++id) {
     auto rows = testing::contact_rows(id, count);
     std::reverse(rows.begin(), rows.end());  // by the second
@@ -173,12 +190,30 @@ TEST_F(Pack, ContactsAreSortedByPair) {
       pair += raw(row.first) + raw(row.second);
       overlap += raw(row.overlap);
       force += raw(row.force);
+      normal += raw(row.normal);
+      slip += raw(row.springs.tangential);
+      roll += raw(row.springs.rolling);
+      twist += raw(row.springs.twisting);
+    }
+    auto at_walls = testing::wall_rows(id);
+    std::reverse(at_walls.begin(), at_walls.end());
+    for (const ContactRow& row : at_walls) {
+      of += raw(row.first);
+      walls += raw(static_cast<std::int32_t>(-1 - row.second));
+      wall_overlap += raw(row.overlap);
     }
   }
   const File file(path);
   EXPECT_EQ(file.bytes("/contacts/pair"), pair);
   EXPECT_EQ(file.bytes("/contacts/overlap"), overlap);
   EXPECT_EQ(file.bytes("/contacts/force"), force);
+  EXPECT_EQ(file.bytes("/contacts/normal"), normal);
+  EXPECT_EQ(file.bytes("/contacts/tangential_displacement"), slip);
+  EXPECT_EQ(file.bytes("/contacts/rolling_displacement"), roll);
+  EXPECT_EQ(file.bytes("/contacts/twisting_displacement"), twist);
+  EXPECT_EQ(file.bytes("/wall_contacts/particle"), of);
+  EXPECT_EQ(file.bytes("/wall_contacts/wall"), walls);
+  EXPECT_EQ(file.bytes("/wall_contacts/overlap"), wall_overlap);
 }
 
 TEST_F(Pack, WithoutRotationOrContactsTheirDatasetsAreAbsent) {
@@ -189,6 +224,7 @@ TEST_F(Pack, WithoutRotationOrContactsTheirDatasetsAreAbsent) {
   EXPECT_FALSE(file.has("/particles/spin"));
   EXPECT_FALSE(file.has("/VTKHDF/PointData/spin"));
   EXPECT_FALSE(file.has("/contacts"));
+  EXPECT_FALSE(file.has("/wall_contacts"));
 }
 
 TEST_F(Pack, NoContactsAtAllIsAnEmptyTable) {
@@ -330,7 +366,7 @@ TEST_F(Pack, RowsBeyondTwoToTheThirtyFirstLieWhereTheyShould) {
   }
   block.has_contacts = true;
   block.contacts = {static_cast<hsize_t>(3 * total), static_cast<hsize_t>(3 * total - 1), 1};
-  block.contact_rows.push_back({total - 2, total - 1, 1e-3, {1.0, 2.0, 3.0}});
+  block.contact_rows.push_back({.first = total - 2, .second = total - 1, .overlap = 1e-3, .force = {1.0, 2.0, 3.0}});
   const std::vector<h5::Column> plan = plan_columns(block);
 
   const std::string path = folder_.file("large.hdf");

@@ -51,10 +51,15 @@ inline std::vector<Grain> some_grains(std::size_t count, int dimension) {
 struct Parts {
   particles::Store store;
   std::vector<std::int32_t> layer, contacts;
-  std::vector<pack::ContactRow> rows;
+  std::vector<pack::ContactRow> rows, wall_rows;
 
   [[nodiscard]] pack::PackParts view(bool with_contacts) const {
-    return {&store, layer, contacts, with_contacts ? &rows : nullptr};
+    return {.store = &store,
+            .layer = layer,
+            .contacts = contacts,
+            .contact_rows = with_contacts ? &rows : nullptr,
+            .wall_rows = &wall_rows,
+            .features = {.memory = true, .rolling = true}};
   }
 };
 
@@ -67,19 +72,33 @@ inline std::vector<pack::ContactRow> contact_rows(GlobalId id, std::size_t count
   for (const GlobalId step : {17, 3, 1}) {
     if (id % 4 == 0 || id + step >= static_cast<GlobalId>(count)) continue;
     const auto x = static_cast<double>(100 * id + step);
-    rows.push_back({id, id + step, 1.0 / x, {x, -x, 0.5 * x}});
+    rows.push_back({.first = id,
+                    .second = id + step,
+                    .overlap = 1.0 / x,
+                    .force = {x, -x, 0.5 * x},
+                    .normal = {0.0, 0.6, x > 0.0 ? 0.8 : -0.8},
+                    .springs = {{2.0 * x, x, -x}, {x, 3.0 * x, x}, -x}});
   }
   return rows;
 }
 
+/// Every third particle is in a corner.
+inline std::vector<pack::ContactRow> wall_rows(GlobalId id) {
+  if (id % 3 != 0) return {};
+  const auto x = static_cast<double>(id);
+  return {{.first = id, .second = -1, .overlap = 0.5 * x, .force = {0.0, 0.0, x}},
+          {.first = id, .second = -4, .overlap = x, .force = {1.0, x, 0.0}}};
+}
+
 inline Parts make_parts(const comm::Comm& comm, const particles::Layout& layout, const std::vector<Grain>& grains,
                         Spread spread) {
-  Parts parts{scattered(comm, layout, grains, spread), {}, {}, {}};
+  Parts parts{scattered(comm, layout, grains, spread), {}, {}, {}, {}};
   for (LocalIndex i = 0; i < parts.store.owned(); ++i) {
     const GlobalId id = parts.store.ids()[static_cast<std::size_t>(i)];
     parts.layer.push_back(layer_of(id));
     parts.contacts.push_back(contacts_of(id));
     for (const auto& row : contact_rows(id, grains.size())) parts.rows.push_back(row);
+    for (const auto& row : wall_rows(id)) parts.wall_rows.push_back(row);
   }
   return parts;
 }

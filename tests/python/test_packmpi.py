@@ -54,7 +54,23 @@ class Packs(unittest.TestCase):
         self.assertEqual(pack.scene()["layers"]["duration"], 0.5)   # a text of bytes
         self.assertEqual(pack.layers, {"inserted": [1, 1]})
         self.assertIsNone(pack.pairs)
+        self.assertEqual((pack.spin, pack.pair_contacts, pack.wall_contacts), (None, {}, {}))
         self.assertEqual(pack.steps(), {})
+
+    def test_contacts_are_there_by_name(self):
+        make_pack(self.path)
+        with h5py.File(self.path, "a") as file:
+            file["particles/spin"] = np.zeros((2, 3))
+            file["contacts/pair"] = [[0, 1]]
+            file["contacts/force"] = [[1.0, 0.0, 0.0]]
+            file["contacts/tangential_displacement"] = [[0.0, 1e-6, 0.0]]
+            file["wall_contacts/wall"] = np.array([0, 2], np.int32)
+        pack = Pack(self.path)
+        self.assertEqual(sorted(pack.pair_contacts), ["force", "pair", "tangential_displacement"])
+        np.testing.assert_array_equal(pack.pair_contacts["tangential_displacement"], [[0.0, 1e-6, 0.0]])
+        np.testing.assert_array_equal(pack.wall_contacts["wall"], [0, 2])
+        np.testing.assert_array_equal(pack.pairs, pack.pair_contacts["pair"])
+        self.assertEqual(pack.spin.shape, (2, 3))
 
     def test_history_has_its_columns(self):
         make_pack(self.path)

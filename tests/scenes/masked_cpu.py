@@ -15,8 +15,8 @@ from pathlib import Path
 from run import Run, HERE, with_arguments
 
 MASK = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-AVX,-FMA,-FMA4", "PACKMPI_ARCH": "x86-64"}
-# Areas of discs; powers that are no halves; the mean of a Gaussian; softness, window and analysis of graded spheres.
-SCENES = ["equal_2d", "near_field_2d", "gaussian", "window"]
+# Areas of discs; powers that are no halves; the mean of a Gaussian; softness, window and analysis of graded spheres; friction with memory.
+SCENES = ["equal_2d", "near_field_2d", "gaussian", "window", "draft"]
 CLOCKED = {"costs", "seal"}   # the seal is of a file with the wall clock in it
 CLOCKED_PROVENANCE = {"wall_seconds", "particle_steps_per_second", "architecture"}
 PROBE = "import math; print(sum(hash(math.pow(1.0 + k / 7, 2.7)) + hash(math.exp(k / 7000)) for k in range(200000)))"

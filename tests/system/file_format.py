@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Makes two small packs and compares them with the tables of doc/file_format.md, both ways.
+"""Makes three small packs and compares them with the tables of doc/file_format.md, both ways.
 
 usage: file_format.py ROOT FOLDER -- mpirun ... packmpi
-The first pack has spin and contacts, the second neither. Exit code 77: h5py is missing.
+The first pack has spin and contacts that remember, the second contacts that do not, the third neither. Exit code 77: h5py is missing.
 """
 import json
 import pathlib
@@ -137,9 +137,12 @@ def main():
     table = documented(page)
     expect(len(table) > 50, f"only {len(table)} rows could be read from the page")
     shutil.rmtree(folder, ignore_errors=True)
-    cases = {"all": (["output.contacts=true"], ("/none",)),
+    rolling, memory = "contact.rolling_friction=0.1", 'contact.tangential="mindlin"'
+    springs = [f"/{group}/{kind}_displacement" for group in ("contacts", "wall_contacts") for kind in ("tangential", "rolling", "twisting")]
+    cases = {"all": (["output.contacts=true", memory, rolling], ("/none",)),
+             "sliding": (["output.contacts=true", 'contact.tangential="sliding"'], tuple(springs)),
              "bare": (["output.contacts=false", "dynamics.rotation=false"],
-                      ("/contacts", "/particles/spin", "/VTKHDF/PointData/spin"))}
+                      ("/contacts", "/wall_contacts", "/particles/spin", "/VTKHDF/PointData/spin"))}
     for case, (sets, absent) in cases.items():
         arguments = [word for one in sets for word in ("--set", one)]
         scene = str(root / "input" / "graded_uniform.toml")

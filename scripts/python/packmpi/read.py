@@ -43,6 +43,11 @@ def attributes(group: h5py.Group) -> dict[str, Any]:
     return {present(name): plain(value) for name, value in group.attrs.items()}
 
 
+def arrays(group: h5py.Group) -> dict[str, NDArray[Any]]:
+    """All datasets of a group, by name."""
+    return {name: data[:] for name, data in group.items()}
+
+
 class Pack:
     """A pack in memory; doc/file_format.md names every number. N particles, M contacts, SI units.
 
@@ -52,9 +57,12 @@ class Pack:
     position        (N, 3): centres [m]; in 2D z is 0 and y is upward
     radius          (N) [m]
     velocity        (N, 3) [m/s]
+    spin            (N, 3) [rad/s], or None without rotation; in 2D only z is not zero
     layer           (N): layer of insertion, from 0
     contacts        (N): touching particles
     pairs, forces   (M, 2) ids and (M, 3) forces on the first [N], or None if the pack was written without contacts
+    pair_contacts, wall_contacts    all that the pack has of contacts, by name: pair or particle and wall, overlap, normal, force, and the
+                    displacements that they remember; empty dictionaries without contacts, or of a pack that was made before there were any
     phi, phi_bulk   solid fraction below H_d, and of the bulk: between 0.2 and 0.8 of H_d, or of the height of a bed below that
     porosity_bulk, void_ratio_bulk    1 - phi_bulk, (1 - phi_bulk) / phi_bulk; infinite where there is nothing
     summary, audit, rest, layers, provenance    what the file says of the whole pack, by name; layers: a list for each name; rest:
@@ -80,6 +88,7 @@ class Pack:
         self.position: Floats = particles["position"][:]
         self.radius: Floats = particles["radius"][:]
         self.velocity: Floats = particles["velocity"][:]
+        self.spin: Union[Floats, None] = particles["spin"][:] if "spin" in particles else None
         self.layer: Integers = particles["layer"][:]
         self.contacts: Integers = particles["contacts"][:]
         self.summary = attributes(file["summary"])
@@ -93,6 +102,8 @@ class Pack:
         self.phi_bulk: float = self.summary["phi_bulk"]
         self.porosity_bulk: float = 1.0 - self.phi_bulk
         self.void_ratio_bulk: float = self.porosity_bulk / self.phi_bulk if self.phi_bulk else math.inf
+        self.pair_contacts = arrays(file["contacts"]) if "contacts" in file else {}
+        self.wall_contacts = arrays(file["wall_contacts"]) if "wall_contacts" in file else {}
         has_contacts = "contacts" in file
         self.pairs: Union[Integers, None] = file["contacts/pair"][:] if has_contacts else None
         self.forces: Union[Floats, None] = file["contacts/force"][:] if has_contacts else None
