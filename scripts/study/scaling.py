@@ -62,6 +62,8 @@ time_step = 1.0e-4
 decomposition = "{kind}"
 [output]
 log_every = {duration:g}
+[rest]
+wait = 0.0
 """
 
 # Name, lateral extents [m], boundary, ranks, other settings: input/million.toml with another floor. The first are fitted, the last held out.
@@ -274,7 +276,7 @@ def time_runs(options, cases):
     time, so runs that did not get their cores do not count."""
     found = []
     for name, side, boundary, ranks, settings in cases:
-        settings = {"container.size": f"[{side:g},{side:g},0.48]", "container.boundary": f'["{boundary}","{boundary}"]', **settings}
+        settings = {"container.size": f"[{side:g},{side:g},0.48]", "container.boundary": f'["{boundary}","{boundary}"]', "rest.wait": "0", **settings}
         good = []
         for attempt in range(options.attempts):
             run = start(options, f"time_{name.replace(' ', '_')}_{attempt}", measuring.ROOT / "input/million.toml", ranks, settings, attempt,

@@ -30,6 +30,11 @@ duration = 0.02
 gravity = 5.0
 [dynamics]
 time_step = 1.0e-4
+[rest]
+unbalanced_force = 1e9   # errors are looked for, not rest
+kinetic_energy = 1e9
+support = 1e9
+wait = 0.0
 """
 scratch, faults = Path(sys.argv[1]).resolve(), sys.argv[2]
 command = sys.argv[sys.argv.index("--") + 1:]
