@@ -10,8 +10,8 @@
 #include <string_view>
 #include <tuple>
 
-#include "base/error.hpp"
 #include "base/digest.hpp"
+#include "base/error.hpp"
 #include "disk/scatter.hpp"
 #include "geometry/container.hpp"
 

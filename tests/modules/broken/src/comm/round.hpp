@@ -5,6 +5,7 @@ struct Long {
   int c = 0;
   int d = 0;
 };
+// clang-format off
 template <class T>
 int of_two_lines(T t,
                  int more) {
@@ -13,3 +14,4 @@ int of_two_lines(T t,
   }
   return more;
 }
+// clang-format on
