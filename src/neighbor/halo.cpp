@@ -89,12 +89,12 @@ class Halo::Graph {
 Halo::Halo(const comm::Comm& comm, const particles::Layout& layout)
     : comm_(&comm), layout_(layout), unit_(std::make_unique<Unit>(layout.live_doubles())) {}
 
-// An error between begin() and end() unwinds past messages that may still arrive: what they are written into must live
-// as long as the process, which that error ends.
+// An error between begin() and end() unwinds past messages that may still arrive: what they are written into lives as
+// long as the process, which that error ends.
 Halo::~Halo() {
+  static std::vector<std::vector<double>> abandoned;
   for (Part& part : parts_) {
-    static auto& abandoned = *new std::vector<Part>;
-    if (part.under_way) abandoned.push_back(std::move(part));
+    if (part.under_way) abandoned.push_back(std::move(part.receive_buffer));
   }
 }
 

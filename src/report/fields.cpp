@@ -27,7 +27,7 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
                                   {"target_sd_radius", "m", r.target_sd_radius},
                                   {"target_min_radius", "m", r.target_min_radius},
                                   {"target_max_radius", "m", r.target_max_radius}};
-  if (r.target_particles > 0) fields.emplace_back("target_particles", "", r.target_particles);
+  if (r.target_particles > 0) fields.push_back({"target_particles", "", r.target_particles});
   return fields;
 }
 
@@ -92,7 +92,7 @@ std::vector<disk::Field> provenance_fields(const RunRecord& r) {
                                   {"series_rows_in_file", "", r.series_rows_in_file},
                                   {"particle_steps_per_second", "1/s", r.particle_steps_per_second},
                                   {"bytes_per_particle", "", r.bytes_per_particle}};
-  if (!r.start.empty()) fields.emplace_back("start", "", r.start);
+  if (!r.start.empty()) fields.push_back({"start", "", r.start});
   return fields;
 }
 
