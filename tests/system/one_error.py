@@ -156,7 +156,7 @@ def signals():
                                  (signal.SIGUSR1, ["a.toml", "-q", "-o", "usr1"], (0, 3)),
                                  (signal.SIGUSR2, ["a.toml", "-q", "-o", "usr2"], (75,))):
         process = subprocess.Popen([program, *words], cwd=scratch, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        sent, end = 0, time.time() + 60
+        sent, end = 0, time.time() + 15
         while process.poll() is None and time.time() < end:
             if catches(process.pid, number):
                 process.send_signal(number)
