@@ -224,6 +224,11 @@ void declare_estimate(CLI::App& app, Request& request) {
   app.add_flag("--json", question.json, "print JSON");
 }
 
+void declare_limits(CLI::App& app, Request& request) {
+  declare_scene(app, request);
+  app.add_flag("--json", request.question.json, "print JSON");
+}
+
 void declare_nothing(CLI::App&, Request&) {}
 
 // A tool's own options are those of its program in Python: packmpi render --help.
@@ -251,6 +256,9 @@ constexpr std::array declarations{
     Declaration{Command::estimate, "estimate",
                 "tell what the scene will take: particles, height or floor, layers, steps, memory, files, time",
                 declare_estimate},
+    Declaration{Command::limits, "limits",
+                "find the loosest and the densest state that the scene can have by friction, on samples of it",
+                declare_limits},
     Declaration{Command::info, "info", "tell what a pack or a checkpoint is; verify it", declare_info},
     Declaration{Command::init, "init", "write a scene to begin with: every key, with its meaning", declare_init},
     Declaration{Command::schema, "schema", "print the JSON Schema of scene files, for editors", declare_nothing},

@@ -10,7 +10,7 @@
 
 namespace packmpi::cli {
 
-enum class Command { run, check, estimate, info, analyze, convert, init, tool, schema, manual, completion };
+enum class Command { run, check, estimate, limits, info, analyze, convert, init, tool, schema, manual, completion };
 
 /// What the user asked on the command line.
 struct Request {
@@ -19,7 +19,7 @@ struct Request {
   run::Options run;                   ///< of run; its scene is the file of info, analyze and init, too
   int dimension = 3;                  ///< of the scene that init writes
   exporters::ConvertRequest convert;  ///< convert: all of it but `force`
-  forecast::Question question;        ///< estimate
+  forecast::Question question;        ///< estimate; its json is that of limits, too
   std::string shell;                  ///< completion: "bash", "zsh" or "fish"
 };
 

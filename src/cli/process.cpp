@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "run/signals.hpp"
+#include "base/signals.hpp"
 
 namespace packmpi::cli {
 namespace {
@@ -25,7 +25,7 @@ void take_closed_descriptors() {
 }  // namespace
 
 bool prepare_process() {
-  run::keep_user_signals();
+  keep_user_signals();
   for (const int number : {SIGPIPE, SIGXFSZ}) (void)std::signal(number, SIG_IGN);
   take_closed_descriptors();
   std::error_code gone;

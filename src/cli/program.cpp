@@ -8,23 +8,24 @@
 
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/signals.hpp"
 #include "base/terminal.hpp"
 #include "base/text.hpp"
 #include "cli/convert.hpp"
 #include "cli/info.hpp"
+#include "cli/starter.hpp"
 #include "comm/petsc.hpp"
 #include "disk/text_file.hpp"
 #include "ensemble/ensemble.hpp"
 #include "forecast/estimate.hpp"
+#include "forecast/limits.hpp"
 #include "input/fidelity.hpp"
 #include "input/restitution.hpp"
-#include "input/starter.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
 #include "run/files.hpp"
 #include "run/finished.hpp"
 #include "run/make_pack.hpp"
-#include "run/signals.hpp"
 #include "run/start.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
@@ -110,7 +111,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
 }
 
 int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& options) {
-  const run::Signals signals;
+  const Signals signals;
   if (options.restart == "auto" && !options.force) {
     if (const auto finished = run::finished_run(comm, scene, options)) {
       if (comm.rank() == 0) print(finished->words + "\n");
@@ -134,7 +135,7 @@ int begin_scene(const comm::Comm& comm, const Request& request) {
       throw Error(ExitCode::bad_input, request.run.scene + " exists; use --force to replace it");
     }
   });
-  disk::write_text(comm, request.run.scene, input::starter(request.dimension));
+  disk::write_text(comm, request.run.scene, starter(request.dimension));
   log::info(fmt::format("{} written; edit it, then: packmpi check {}", request.run.scene, request.run.scene));
   return 0;
 }
@@ -147,6 +148,10 @@ std::string told(const comm::Comm& comm, const Request& request) {
   if (request.command == Command::info) return describe_file(comm, request.run.scene);
   if (request.command == Command::analyze) return run::analyze(comm, request.run.scene);
   if (request.command == Command::convert) return convert(comm, request);
+  if (request.command == Command::limits) {
+    const report::LimitsReport found = forecast::limits(comm, request.run.scene, request.run.overrides);
+    return request.question.json ? report::to_json(found) : report::to_table(found);
+  }
   const report::Estimate told = forecast::estimate(comm, request.run.scene, request.run.overrides, request.question);
   return request.question.json ? report::to_json(told) : report::to_table(told);
 }

@@ -48,6 +48,7 @@ Json schema_of(const Key& key) {
   input::Input sample;
   sample.near_field.emplace();
   sample.start.emplace();
+  sample.target.emplace();
   Json schema = std::visit(
       [&](const auto* slot) -> Json {
         using Value = std::remove_cvref_t<decltype(*slot)>;

@@ -21,13 +21,14 @@ LawConstants constants(const input::Input& in, double youngs_modulus, double sha
 }
 
 /// Mindlin's no-slip stiffness, 1/G* = sharing (2 - nu) / G with G = E / (2 (1 + nu)), and the torques' limits.
-void add_memory(const input::Input& in, double youngs_modulus, double sharing, double slip_mass, LawConstants& c) {
+void add_memory(const input::Input& in, double youngs_modulus, double sharing, double slip_mass,
+                const scene::Friction& friction, LawConstants& c) {
   const double nu = in.particles.poisson_ratio;
   const double modulus = youngs_modulus / (2.0 * sharing * (1.0 + nu) * (2.0 - nu));  // G*
   c.shear_stiffness = 8.0 * modulus;
   c.shear_damping = 2.0 * in.contact.damping_ratio * std::sqrt(c.shear_stiffness * slip_mass);
-  c.rolling_friction = in.contact.rolling_friction;
-  c.twisting_friction = in.contact.twisting_friction;
+  c.rolling_friction = friction.rolling;
+  c.twisting_friction = friction.twisting;
 }
 
 // In how many steps "shared" ends the slip of a contact. All contacts of a particle brake it at once: the spin of one
@@ -54,19 +55,20 @@ double slip_rate(const input::Contact& contact, double time_step) {
 
 Law make_law(const scene::Scene& scene, const scene::Stage& stage) {
   const input::Input& in = scene.in;
+  const scene::Friction friction = stage.friction.value_or(scene::own_friction(in.contact));
   const bool rigid = in.contact.wall == input::WallStiffness::rigid;
   const bool rolls = scene.features.rotation &&
                      in.contact.friction_velocity == input::FrictionVelocity::contact;  // spin takes up slip
-  Law law{.pair = constants(in, stage.youngs_modulus, 2.0, in.contact.friction),
-          .wall = constants(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, in.contact.wall_friction),
+  Law law{.pair = constants(in, stage.youngs_modulus, 2.0, friction.particles),
+          .wall = constants(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, friction.walls),
           .mass_factor = 3.0 / (4.0 * std::numbers::pi * in.particles.density),
           .spin_slip = in.contact.friction_velocity == input::FrictionVelocity::contact ? 1.0 : 0.0,
           .slip_rate = slip_rate(in.contact, stage.time_step),
           .slip_mass = rolls ? 2.0 / 7.0 : 1.0,
           .lowest_force = in.contact.tension_cutoff ? 0.0 : -std::numeric_limits<double>::infinity()};
   if (scene.features.memory) {
-    add_memory(in, stage.youngs_modulus, 2.0, law.slip_mass, law.pair);
-    add_memory(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, law.slip_mass, law.wall);
+    add_memory(in, stage.youngs_modulus, 2.0, law.slip_mass, friction, law.pair);
+    add_memory(in, stage.youngs_modulus, rigid ? 1.0 : 2.0, law.slip_mass, friction, law.wall);
   }
   if (scene.sizes.equal()) {
     const double k = 1.0 / scene.sizes.largest();

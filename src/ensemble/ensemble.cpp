@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/log.hpp"
+#include "base/signals.hpp"
 #include "base/terminal.hpp"
 #include "base/timer.hpp"
 #include "base/voids.hpp"
@@ -18,13 +19,12 @@
 #include "run/files.hpp"
 #include "run/finished.hpp"
 #include "run/make_pack.hpp"
-#include "run/signals.hpp"
 
 namespace packmpi::ensemble {
 namespace {
 
 using run::Files, run::files_of, run::is_there, run::Finished, run::finished_run, run::make_pack, run::Options,
-    run::take_lock, run::Signals, run::take_wish, run::Wish;
+    run::take_lock;
 
 namespace fs = std::filesystem;
 

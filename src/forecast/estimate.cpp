@@ -12,6 +12,7 @@
 #include "pack/pack.hpp"
 #include "report/fields.hpp"
 #include "run/record.hpp"
+#include "run/search.hpp"
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
@@ -36,7 +37,11 @@ constexpr double writing_bytes = 400.0;
 [[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_input, "estimate: " + words); }
 
 scene::BedFraction fraction_of(const scene::Scene& scene, const Question& question) {
+  constexpr double border = 0.01;  // what floor and surface may take from a target, which is of the bulk
   if (question.fraction) return {*question.fraction, 0.0};
+  if (scene.in.target && !scene.in.target->relative_density) {
+    return {control::fraction_wanted(*scene.in.target, {}), border};
+  }
   return scene::expected_fraction(scene);
 }
 
@@ -316,6 +321,18 @@ void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   e.writing_bytes = std::llround(settling + writing_bytes * own);
 }
 
+// As if one after the other: ranks share only the first ones.
+void add_search(const scene::Scene& scene, report::Estimate& e) {
+  if (!scene.in.target) return;
+  const run::Sample sample = run::sample_of(scene);
+  const std::int64_t a_layer = scene::particles_a_layer(sample.scene);
+  const std::int64_t layers = scene::expected_layers(sample.scene, scene::expected_fraction(sample.scene).value);
+  const std::int64_t extremes = scene.in.target->relative_density ? 2 * run::seeds_of_extremes : 0;
+  e.search = report::SearchCost{.samples = run::most_trials(sample) + extremes,
+                                .particles = layers * a_layer,
+                                .particle_steps = particle_steps_of(sample.scene, layers, a_layer)};
+}
+
 void add_probe(const comm::Comm& comm, const scene::Scene& scene, report::Estimate& e) {
   report::Probe got;
   comm::agree_on(comm, [&] { got = probe(scene, probe_seconds); });
@@ -325,6 +342,8 @@ void add_probe(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   e.seconds = static_cast<double>(e.particles.value) / (got.insertions_per_second * e.ranks);
   if (e.particle_steps > 0)
     e.seconds += static_cast<double>(e.particle_steps) / (got.particle_steps_per_second * e.ranks);
+  if (e.search)
+    e.seconds += static_cast<double>(e.search->samples * e.search->particle_steps) / got.particle_steps_per_second;
 }
 
 }  // namespace
@@ -361,6 +380,7 @@ report::Estimate estimate(const comm::Comm& comm, const std::string& path, const
   e.fraction_given = question.fraction.has_value();
   add_counts(scene, fraction, e);
   add_steps(scene, e);
+  add_search(scene, e);
   add_ranks(scene, question.ranks > 0 ? question.ranks : comm.size(), e);
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) add_files(comm, scene, e);

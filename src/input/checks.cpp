@@ -325,6 +325,41 @@ void check_theta(const Case& scene) {
   }
 }
 
+void check_target(const Case& scene) {
+  const Input& in = scene.in;
+  if (!in.target) return;
+  const Target& target = *in.target;
+  const int ways = (target.solid_fraction ? 1 : 0) + (target.porosity ? 1 : 0) + (target.void_ratio ? 1 : 0) +
+                   (target.relative_density ? 1 : 0);
+  const auto words = fmt::format("has {} of solid_fraction, porosity, void_ratio and relative_density; give one", ways);
+  if (ways != 1) scene.refuse("target", words);
+  if (insertion_alone(in))
+    scene.refuse("target",
+                 "layers.duration = 0 is insertion alone, whose density is layers.fraction; remove one of them");
+  if (in.start)
+    scene.refuse("target", "how the layers of start.pack were filled in is not known; remove [target] or [start]");
+  if (in.contact.tangential == Tangential::sliding) {
+    scene.refuse("contact.tangential",
+                 "\"sliding\" friction has no memory, and density hardly depends on it; use \"mindlin\" with a target "
+                 "(fidelity = \"paper\" sets \"sliding\" unless the scene says so)");
+  }
+  if (!(in.contact.friction > 0.0))
+    scene.refuse("contact.friction", "a target is met by friction, which is 0 here; give some, or remove [target]");
+  if (target.most_friction <= least_filling_friction) {
+    scene.refuse("target.most_friction",
+                 fmt::format("{:g} is not above {:g}, the least that layers are filled in with; raise it",
+                             target.most_friction, least_filling_friction));
+  }
+  if (target.most_rolling_friction < in.contact.rolling_friction) {
+    scene.refuse("target.most_rolling_friction",
+                 fmt::format("{:g} is less than contact.rolling_friction = {:g}; raise it, or leave it out",
+                             target.most_rolling_friction, in.contact.rolling_friction));
+  }
+  if (target.most_rolling_friction > 0.0 && !in.dynamics.rotation) {
+    scene.refuse("target.most_rolling_friction", "particles without rotation cannot roll; remove it");
+  }
+}
+
 void check_checkpoint(const Case& scene) {
   const std::string& every = scene.in.checkpoint.every;
   if (rhythm_of(every)) return;
@@ -355,6 +390,7 @@ void check(const Input& in, const Document& document) {
   check_features(scene);
   check_memory(scene);
   check_theta(scene);
+  check_target(scene);
   check_checkpoint(scene);
   check_petsc(scene);
 }

@@ -134,6 +134,19 @@ struct Start {           ///< from a pack that is there
   double overlap = 0.0;  ///< [-] of a radius: deeper overlaps of its particles are refused
 };
 
+/// [-] While layers are filled in, friction between particles is no less: below, a bed is no denser, and takes longer
+/// to come to rest.
+inline constexpr double least_filling_friction = 1e-3;
+
+/// The density that the bulk of the pack is to have; exactly one of the first four is given.
+struct Target {
+  std::optional<double> solid_fraction, porosity, void_ratio;  ///< [-]
+  std::optional<double> relative_density;  ///< [-] (e_max - e) / (e_max - e_min), the limits being this scene's own
+  double tolerance = 0.0;                  ///< [-] in solid fraction
+  double most_friction = 0.0;              ///< [-] between particles while layers are filled in
+  double most_rolling_friction = 0.0;      ///< [-] likewise
+};
+
 struct Parallel {
   Decomposition decomposition = Decomposition::slab;
 };
@@ -173,6 +186,7 @@ struct Input {
   Dynamics dynamics;
   std::optional<Start> start;  ///< none: from nothing
   Rest rest;
+  std::optional<Target> target;  ///< none: the density that comes
   Parallel parallel;
   Ensemble ensemble;
   Checkpoint checkpoint;

@@ -17,6 +17,7 @@ Slot sample(const Key& key) {
     Input in;
     in.near_field.emplace();
     in.start.emplace();
+    in.target.emplace();
     return in;
   }();
   return key.slot(any);

@@ -26,7 +26,7 @@ Place at(Member... member) {
 }
 // clang-format on
 
-/// A member of the near field, which the reader makes when the file has the table.
+/// A member of a table that the reader makes when the file has it.
 Place near(double NearField::*member) {
   return [=](Input& in) -> Slot { return &((*in.near_field).*member); };
 }
@@ -116,6 +116,8 @@ constexpr Condition viscous{"regularisation = \"viscous\"",
 constexpr Condition settled{"stop = \"settled\"",
                             [](const Input& in) { return in.dynamics.stop == StopRule::settled; }};
 constexpr Condition near_field{"[near_field] is present", [](const Input& in) { return in.near_field.has_value(); }};
+
+constexpr Condition targeted{"[target] is present", [](const Input& in) { return in.target.has_value(); }};
 
 // clang-format off
 std::vector<Key> general_keys() {
@@ -308,7 +310,7 @@ std::vector<Key> dynamics_keys() {
     whole("dynamics.window", at(dynamics, &Dynamics::window), between(0, 1 << 24), "0",
          "So many of the newest layers move; older ones stand still, as walls to them, until the final relaxation. 0: all move."),
     real("dynamics.relaxation", at(dynamics, &Dynamics::relaxation), time, at_least(0), "auto",
-         "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window or softer layers, else none."),
+         "Duration of the final stage, in which all particles move; \"auto\": 0.9 s with a window, softer layers or a target, else none."),
   };
 }
 
@@ -345,6 +347,23 @@ std::vector<Key> rest_keys() {
   };
 }
 
+std::vector<Key> target_keys() {
+  const auto wish = [](auto member) -> Place { return [=](Input& in) -> Slot { return &((*in.target).*member); }; };
+  return {
+    when(targeted, real("target.solid_fraction", wish(&Target::solid_fraction), plain, inside(0, 1), "auto",
+         "Solid fraction that the bulk of the pack is to have. Exactly one of this and the next three is given; friction while layers are filled in is found for it.")),
+    when(targeted, real("target.porosity", wish(&Target::porosity), ratio, inside(0, 1), "auto", "The same as porosity n = 1 - phi.")),
+    when(targeted, real("target.void_ratio", wish(&Target::void_ratio), plain, above(0), "auto", "The same as void ratio e = (1 - phi) / phi.")),
+    when(targeted, real("target.relative_density", wish(&Target::relative_density), ratio, between(0, 1), "auto",
+         "The same as (e_max - e) / (e_max - e_min), between the loosest and the densest state that `packmpi limits` finds of this scene.")),
+    when(targeted, real("target.tolerance", wish(&Target::tolerance), plain, above(0), "0.002", "What the bulk may differ by, in solid fraction, whichever was given.")),
+    when(targeted, real("target.most_friction", wish(&Target::most_friction), plain, at_least(0), "=contact.friction",
+         "The most friction between particles while layers are filled in; walls, rolling and twisting scale with it, the last two up to the scene's own. The final relaxation has the scene's own.")),
+    when(targeted, real("target.most_rolling_friction", wish(&Target::most_rolling_friction), plain, at_least(0), "=contact.rolling_friction",
+         "The most resistance to rolling while layers are filled in: more than the scene's own makes looser packs than most_friction alone.")),
+  };
+}
+
 std::vector<Key> program_keys() {
   return {
     word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
@@ -369,7 +388,7 @@ const std::vector<Key>& keys() {
     std::vector<Key> all;
     for (const auto& part :
          {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(), force_keys(),
-          near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), program_keys()}) {
+          near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), target_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

@@ -47,6 +47,8 @@ std::string suggestion(const std::string& table, const std::string& name) {
       return home.empty() ? fmt::format("\"{}\" belongs above all tables", name)
                           : fmt::format("\"{}\" belongs into [{}]", name, home);
   }
+  if (name.find("porosity") != std::string::npos || name.find("void") != std::string::npos)
+    return "a density is asked for by [target] porosity, void_ratio, solid_fraction or relative_density";
   const std::string where = table.empty() ? "a scene has" : fmt::format("[{}] has", table);
   return fmt::format("{} {}", where, in_words(siblings));
 }
@@ -243,6 +245,7 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
   refuse_unknown(document.root(), "");
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   if (document.find("start") != nullptr) in.start.emplace();
+  if (document.find("target") != nullptr) in.target.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
   take_curve(document, curve, in);

@@ -48,8 +48,13 @@ RunState state_in(const disk::SealedFile& file) {
   RunState state = former ? former_state_of(state_in_present_names(text)) : state_of(text);
   state.effective_input = former ? scene_in_present_names(scene) : scene;
   const Progress& p = state.progress;
-  const bool valid = p.count >= 0 && p.steps >= 0 && p.now.done >= 0 && state.dimension >= 2 && state.dimension <= 3 &&
-                     std::ranges::is_sorted(p.first_ids) &&
+  const control::Filling& f = p.filling;
+  const bool filling_valid =
+      !f.on || (f.layer_knobs.size() == p.first_ids.size() && f.layer_surfaces.size() == p.layers.size() &&
+                f.layer_fractions.size() == p.layers.size() && f.knobs.size() == f.filled.size() &&
+                f.knobs.size() == f.relaxed.size());
+  const bool valid = filling_valid && p.count >= 0 && p.steps >= 0 && p.now.done >= 0 && state.dimension >= 2 &&
+                     state.dimension <= 3 && std::ranges::is_sorted(p.first_ids) &&
                      p.first_ids.size() == p.layers.size() + (p.now.phase == Phase::settling ? 1 : 0);
   if (!valid) refuse_checkpoint("its state contradicts itself");
   return state;

@@ -171,7 +171,7 @@ void write_summary(hid_t file, const report::RunRecord& record) {
   disk::h5::set_attributes(disk::h5::create_group(file, "/summary/audit").get(), report::audit_fields(record.audit));
   write_rest(file, record);
   (void)disk::h5::create_group(file, "/summary/layers");
-  for (const report::LayerColumn& column : report::layer_columns(record.layers)) {
+  for (const report::LayerColumn& column : report::layer_columns(record)) {
     std::visit(
         [&](const auto& values) {
           disk::h5::write_small(file, std::string("/summary/layers/") + column.name, column.unit, values);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "control/filling.hpp"
 #include "report/record.hpp"
 
 namespace packmpi::pack {
@@ -46,6 +47,7 @@ struct Progress {
   std::int64_t relaxations = 0;           ///< final stages begun and finished
   double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
   report::SeriesMark series;              ///< NAME.steps.csv
+  control::Filling filling;               ///< towards a density; of no meaning without a target
   PhaseProgress now;
 };
 

@@ -47,6 +47,22 @@ void each_field(Mark& mark, Visit visit) {
   visit("digest", digest);
 }
 
+template <class F, class Visit>
+requires std::is_same_v<std::remove_const_t<F>, control::Filling>
+void each_field(F& filling, Visit visit) {
+  auto& [on, target, knob, bias, knobs, filled, relaxed, layer_knobs, layer_surfaces, layer_fractions] = filling;
+  visit("on", on);
+  visit("target", target);
+  visit("knob", knob);
+  visit("bias", bias);
+  visit("knobs", knobs);
+  visit("filled", filled);
+  visit("relaxed", relaxed);
+  visit("layer_knobs", layer_knobs);
+  visit("layer_surfaces", layer_surfaces);
+  visit("layer_fractions", layer_fractions);
+}
+
 template <class Now, class Visit>
 requires std::is_same_v<std::remove_const_t<Now>, PhaseProgress>
 void each_field(Now& now, Visit visit) {
@@ -66,7 +82,7 @@ template <class P, class Visit>
 requires std::is_same_v<std::remove_const_t<P>, Progress>
 void each_field(P& progress, Visit visit) {
   auto& [first_ids, count, moving_from, energy_given, steps, relaxation_steps, particle_steps, layers, height,
-         compaction_rate, relaxations, height_before_relaxation, series, now] = progress;
+         compaction_rate, relaxations, height_before_relaxation, series, filling, now] = progress;
   visit("first_ids", first_ids);
   visit("count", count);
   visit("moving_from", moving_from);
@@ -80,6 +96,7 @@ void each_field(P& progress, Visit visit) {
   visit("relaxations", relaxations);
   visit("height_before_relaxation", height_before_relaxation);
   visit("series", series);
+  visit("filling", filling);
   each_field(now, visit);
 }
 
@@ -97,7 +114,8 @@ void each_field(State& state, Visit visit) {
 }
 
 template <class T>
-constexpr bool is_struct = std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark>;
+constexpr bool is_struct =
+    std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> || std::is_same_v<T, control::Filling>;
 
 constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
@@ -105,6 +123,13 @@ Phase phase_of(const std::string& name) {
   const auto found = std::ranges::find(phase_names, name);
   if (found == phase_names.end()) throw Error(ExitCode::bad_checkpoint, "/state names no phase of a run");
   return static_cast<Phase>(found - phase_names.begin());
+}
+
+// What a scene does not use is not there.
+template <class T>
+bool is_off(const T& value) {
+  if constexpr (std::is_same_v<T, control::Filling>) return !value.on;
+  return false;
 }
 
 template <class T>
@@ -142,7 +167,7 @@ RunState parse_state(const std::string& text, bool may, RunState state) {
   try {
     const Json root = Json::parse(text);
     each_field(state, [&](const char* name, auto& field) {
-      if (!may || root.contains(name)) read(root.at(name), field);
+      if ((!may && !is_off(field)) || root.contains(name)) read(root.at(name), field);
     });
   } catch (const Json::exception& error) {
     throw Error(ExitCode::bad_checkpoint, fmt::format("/state is not what it should be: {}", error.what()));
@@ -154,7 +179,9 @@ RunState parse_state(const std::string& text, bool may, RunState state) {
 
 std::string to_text(const RunState& state) {
   Json root;
-  each_field(state, [&](const char* name, const auto& field) { root[name] = json_of(field); });
+  each_field(state, [&](const char* name, const auto& field) {
+    if (!is_off(field)) root[name] = json_of(field);
+  });
   return root.dump(1);  // doubles: the shortest digits that give the same bits
 }
 

@@ -63,6 +63,11 @@ std::string to_json(const Estimate& e) {
   root["ghost_share"] = e.ghosts;
   root["memory_of_a_rank"] = {{"settling", e.settling_bytes}, {"writing", e.writing_bytes}};
   root["files"] = {{"pack", e.pack_bytes}, {"checkpoint", e.checkpoint_bytes}, {"step_log", e.step_log_bytes}};
+  if (e.search) {
+    root["target"] = {{"samples", e.search->samples},
+                      {"particles", e.search->particles},
+                      {"particle_steps", e.search->particle_steps}};
+  }
   if (e.probe) {
     root["probe"] = {{"particles", e.probe->particles},
                      {"steps", e.probe->steps},
@@ -110,6 +115,11 @@ std::string to_table(const Estimate& e) {
   line("pack", memory(e.pack_bytes));
   line("checkpoints, two of", memory(e.checkpoint_bytes));
   line("time series, about", memory(e.step_log_bytes));
+  if (e.search) {
+    line("target: samples to find the friction, at most",
+         fmt::format("{} of {} particles: {:.3g} particle-steps", e.search->samples, e.search->particles,
+                     static_cast<double>(e.search->samples * e.search->particle_steps)));
+  }
   if (e.probe) {
     line("probe", fmt::format("{} particles, {} steps: {:.3g}e6 particle-steps/s a rank", e.probe->particles,
                               e.probe->steps, 1e-6 * e.probe->particle_steps_per_second));

@@ -23,6 +23,12 @@ struct Count {
   std::int64_t value = 0, least = 0, most = 0;
 };
 
+/// What a target costs beside the run.
+struct SearchCost {
+  std::int64_t samples = 0;                        ///< at most
+  std::int64_t particles = 0, particle_steps = 0;  ///< of one; at most
+};
+
 struct Estimate {
   std::string scene_file;
   std::string found;               ///< which of the three is the answer: "particles", "height" or "floor"
@@ -48,6 +54,7 @@ struct Estimate {
   std::int64_t pack_bytes = 0;        ///< NAME.hdf
   std::int64_t checkpoint_bytes = 0;  ///< each of two
   std::int64_t step_log_bytes = 0;    ///< NAME.steps.csv, about
+  std::optional<SearchCost> search;   ///< of a target
   std::optional<Probe> probe;
   double seconds = 0.0;  ///< [s] wall time of the run; 0 without a probe
 };

@@ -28,6 +28,11 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
                                   {"target_min_radius", "m", r.target_min_radius},
                                   {"target_max_radius", "m", r.target_max_radius}};
   if (r.target_particles > 0) fields.push_back({"target_particles", "", r.target_particles});
+  if (r.density.on()) {
+    fields.push_back({"target_density_key", "", r.density.key});
+    fields.push_back({"target_phi_bulk", "-", r.density.fraction});
+    fields.push_back({"target_tolerance", "-", r.density.tolerance});
+  }
   return fields;
 }
 
@@ -96,21 +101,28 @@ std::vector<disk::Field> provenance_fields(const RunRecord& r) {
   return fields;
 }
 
-std::vector<LayerColumn> layer_columns(const std::vector<LayerRow>& layers) {
-  return {{"inserted", "", collect(layers, &LayerRow::inserted)},
-          {"total", "", collect(layers, &LayerRow::total)},
-          {"attempts", "", collect(layers, &LayerRow::attempts)},
-          {"target_fraction", "-", collect(layers, &LayerRow::target_fraction)},
-          {"achieved_fraction", "-", collect(layers, &LayerRow::achieved_fraction)},
-          {"region_bottom", "m", collect(layers, &LayerRow::region_bottom)},
-          {"height", "m", collect(layers, &LayerRow::height)},
-          {"top", "m", collect(layers, &LayerRow::top)},
-          {"duration", "s", collect(layers, &LayerRow::duration)},
-          {"steps", "", collect(layers, &LayerRow::steps)},
-          {"kinetic_per_mgd", "-", collect(layers, &LayerRow::kinetic_per_mgd)},
-          {"max_overlap", "-", collect(layers, &LayerRow::max_overlap)},
-          {"coordination", "-", collect(layers, &LayerRow::coordination)},
-          {"stop_reason", "", collect(layers, &LayerRow::stop_reason)}};
+std::vector<LayerColumn> layer_columns(const RunRecord& record) {
+  const std::vector<LayerRow>& layers = record.layers;
+  std::vector<LayerColumn> columns{{"inserted", "", collect(layers, &LayerRow::inserted)},
+                                   {"total", "", collect(layers, &LayerRow::total)},
+                                   {"attempts", "", collect(layers, &LayerRow::attempts)},
+                                   {"target_fraction", "-", collect(layers, &LayerRow::target_fraction)},
+                                   {"achieved_fraction", "-", collect(layers, &LayerRow::achieved_fraction)},
+                                   {"region_bottom", "m", collect(layers, &LayerRow::region_bottom)},
+                                   {"height", "m", collect(layers, &LayerRow::height)},
+                                   {"top", "m", collect(layers, &LayerRow::top)},
+                                   {"duration", "s", collect(layers, &LayerRow::duration)},
+                                   {"steps", "", collect(layers, &LayerRow::steps)},
+                                   {"kinetic_per_mgd", "-", collect(layers, &LayerRow::kinetic_per_mgd)},
+                                   {"max_overlap", "-", collect(layers, &LayerRow::max_overlap)},
+                                   {"coordination", "-", collect(layers, &LayerRow::coordination)},
+                                   {"stop_reason", "", collect(layers, &LayerRow::stop_reason)}};
+  if (record.density.on()) {
+    columns.push_back({"filling_friction", "-", record.density.friction});
+    columns.push_back({"filling_rolling_friction", "-", record.density.rolling_friction});
+    columns.push_back({"buried_fraction", "-", record.density.buried});
+  }
+  return columns;
 }
 
 }  // namespace packmpi::report

@@ -22,6 +22,6 @@ struct LayerColumn {
   const char* unit;
   std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<std::string>> values;
 };
-[[nodiscard]] std::vector<LayerColumn> layer_columns(const std::vector<LayerRow>& layers);
+[[nodiscard]] std::vector<LayerColumn> layer_columns(const RunRecord& record);
 
 }  // namespace packmpi::report

@@ -26,7 +26,7 @@ void add_units(Json& units, const std::vector<disk::Field>& fields) {
 Json to_rows(const RunRecord& record) {
   Json rows = Json::array();
   for (std::size_t k = 0; k < record.layers.size(); ++k) rows.push_back({{"layer", k}});
-  for (const LayerColumn& column : layer_columns(record.layers)) {
+  for (const LayerColumn& column : layer_columns(record)) {
     std::visit(
         [&](const auto& values) {
           for (std::size_t k = 0; k < values.size(); ++k) rows[k][column.name] = values[k];
@@ -66,7 +66,7 @@ std::string to_json(const RunRecord& record) {
   Json units = Json::object();
   for (const auto& fields : {target_fields(record), achieved_fields(record), audit_fields(record.audit)})
     add_units(units, fields);
-  for (const LayerColumn& column : layer_columns({})) {
+  for (const LayerColumn& column : layer_columns(record)) {
     if (column.unit[0] != '\0') units[column.name] = column.unit;
   }
   for (const char* diameter : {"d10", "d30", "d50", "d60", "d90"}) units[diameter] = "m";

@@ -61,6 +61,17 @@ struct Criterion {
   [[nodiscard]] bool met() const noexcept { return !asked() || std::abs(value - target) < limit; }
 };
 
+/// The density that was asked for, and what layers were filled in with. Empty without a target.
+struct DensityTarget {
+  std::string key;                                 ///< that named it; "": no target
+  double fraction = 0.0, tolerance = 0.0;          ///< [-] solid fraction of the bulk
+  std::vector<double> friction, rolling_friction;  ///< [-] of each layer while it settled
+  /// [-] solid fraction of the buried part of the bed after each layer; 0: nothing was buried deep enough
+  std::vector<double> buried;
+
+  [[nodiscard]] bool on() const noexcept { return !key.empty(); }
+};
+
 /// A number that every rank has its own of, rank after rank.
 struct RankNumbers {
   std::string name, unit;  ///< "" for counts
@@ -84,6 +95,7 @@ struct RunRecord {
   bool insertion_alone = false;       ///< target_fraction is that of the container, and the height no target
   std::string start;                  ///< what was taken over from another pack, and what not; "": there was none
   double target_mean_radius = 0.0, target_sd_radius = 0.0, target_min_radius = 0.0, target_max_radius = 0.0;  ///< [m]
+  DensityTarget density;
   // achieved (*)
   std::int64_t particles = 0;
   double height = 0.0, top = 0.0;  ///< [m]

@@ -30,9 +30,12 @@ void list_density(Buffer& out, const RunRecord& r) {
   line(out, "solid fraction below the target height, phi", asked ? number(r.target_fraction) : "", number(r.phi));
   line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
   line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
-  line(out, "solid fraction in the bulk, phi_bulk", "", number(r.phi_bulk));
-  line(out, "porosity in the bulk", "", number(porosity(r.phi_bulk)));
-  line(out, "void ratio in the bulk", "", number(void_ratio(r.phi_bulk)));
+  const auto wanted = [&](double (*words)(double)) {
+    return r.density.on() ? number(words(r.density.fraction)) : std::string();
+  };
+  line(out, "solid fraction in the bulk, phi_bulk", wanted([](double phi) { return phi; }), number(r.phi_bulk));
+  line(out, "porosity in the bulk", wanted(porosity), number(porosity(r.phi_bulk)));
+  line(out, "void ratio in the bulk", wanted(void_ratio), number(void_ratio(r.phi_bulk)));
 }
 
 /// The middle column has targets only.

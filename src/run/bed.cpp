@@ -86,6 +86,12 @@ bool Bed::full() const {
 
 observe::Bulk Bed::bulk() const { return observe::bulk_of(scene, surface()); }
 
+double Bed::fraction_of(const control::Slab& slab) const {
+  const observe::Bulk part{slab.low, slab.high};
+  return observe::density(comm, store, scene, part).phi_bulk +
+         observe::density(comm, neighborhood.frozen(), scene, part).phi_bulk;
+}
+
 void Bed::balance() {
   if (ownership.rebalance(neighborhood.column_counts(store))) {
     neighborhood.ownership_changed();

@@ -64,6 +64,9 @@ struct Bed {
   /// Every rank alike. Puts it back: the holders are in the store, and nothing is frozen yet. Then rebuild.
   void give(const pack::Histories& histories);
 
+  /// Solid fraction between two heights of all that lies there, frozen or not. Collective, exact.
+  [[nodiscard]] double fraction_of(const control::Slab& slab) const;
+
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated for the particles and all about them

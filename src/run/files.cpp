@@ -89,15 +89,20 @@ disk::Lock take_lock(const std::string& path) {
   return lock;
 }
 
-Claim claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
-  Claim claim{.files = files_of(scene.in.name, options), .lock = {}};
-  const Files& files = claim.files;
+void check_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const Files files = files_of(scene.in.name, options);
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0) return;
     disk::refuse_if_locked(files.lock);  // before words about files that a run at work has there
     check_free(files, options);
   });
   disk::check_writable(comm, options.folder, static_cast<std::int64_t>(bytes_a_particle * expected_particles(scene)));
+}
+
+Claim claim_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  Claim claim{.files = files_of(scene.in.name, options), .lock = {}};
+  const Files& files = claim.files;
+  check_files(comm, scene, options);
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) {
       claim.lock = take_lock(files.lock);

@@ -40,6 +40,10 @@ struct Claim {
 /// Throws as disk::Lock.
 [[nodiscard]] disk::Lock take_lock(const std::string& path);
 
+/// Collective. The first half of claim_files(), which refuses and writes nothing: before work that is done before the
+/// files are claimed. Throws likewise.
+void check_files(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
+
 /// The slots and the manifest, if they are there. Rank-local.
 void remove_checkpoints(const Files& files);
 

@@ -141,6 +141,30 @@ void Journal::layer_settled(const report::LayerRow& row) {
         {"max_overlap", row.max_overlap}});
 }
 
+void Journal::filling_begins() const {
+  const control::Filling& filling = bed_.progress.filling;
+  if (!filling.on) return;
+  log::info(fmt::format("target: solid fraction {:.4f}; friction while filling {:.4g}, {}", filling.target,
+                        control::friction_of(bed_.scene.in, filling.knob).particles,
+                        filling.knobs.empty() ? "as tried with the scene itself" : "corrected from layer to layer"));
+}
+
+void Journal::layer_measured(const control::Filling& filling) const {
+  const scene::Friction friction = control::friction_of(bed_.scene.in, filling.layer_knobs.back());
+  const double measured = filling.layer_fractions.back();
+  const std::string rolling =
+      bed_.scene.features.rolling ? fmt::format(", rolling friction {:.3g}", friction.rolling) : "";
+  const std::string words = measured > 0.0 ? fmt::format("{:.4f}", measured) : "not yet measured";
+  tell("layer_measured",
+       fmt::format("layer {:3d}: friction while filling {:.4g}{}, solid fraction {}, target {:.4f}",
+                   filling.layer_knobs.size(), friction.particles, rolling, words, filling.target),
+       {{"layer", std::ssize(filling.layer_knobs)},
+        {"friction", friction.particles},
+        {"rolling_friction", friction.rolling},
+        {"solid_fraction", measured},
+        {"target", filling.target}});
+}
+
 void Journal::relaxation_started() { relaxing_ = true; }
 
 void Journal::relaxation_not_needed() { relaxing_ = false; }

@@ -23,9 +23,11 @@ class Journal {
   /// duration done, 0 .. 1.
   void moment(double share);
   void layer_settled(const report::LayerRow& row);  ///< local
-  void relaxation_started();                        ///< local; what follows is the final stage
-  void relaxation_not_needed();                     ///< local; the bed was at rest: there was no final stage
-  void relaxed(double height, double duration);     ///< local; height [m] after the final stage, which took so long [s]
+  void filling_begins() const;                      ///< local; what a target is going to be met by, if there is one
+  void layer_measured(const control::Filling& filling) const;  ///< local
+  void relaxation_started();                                   ///< local; what follows is the final stage
+  void relaxation_not_needed();                                ///< local; the bed was at rest: there was no final stage
+  void relaxed(double height, double duration);  ///< local; height [m] after the final stage, which took so long [s]
   /// Local. What was told so far is on the disk to stay: before a checkpoint that counts on it.
   void sync() { steps_.sync(); }
   /// Collective. Closes the time series; how many of its rows are in the file.

@@ -9,12 +9,12 @@
 #include <limits>
 
 #include "base/log.hpp"
+#include "base/signals.hpp"
 #include "base/text.hpp"
 #include "disk/text_file.hpp"
 #include "pack/checkpoint.hpp"
 #include "packmpi/version.hpp"
 #include "report/report.hpp"
-#include "run/signals.hpp"
 
 namespace packmpi::run {
 namespace {

@@ -2,158 +2,26 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-
 #include "base/log.hpp"
 #include "base/voids.hpp"
 #include "disk/text_file.hpp"
-#include "geometry/volume.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
 #include "report/report.hpp"
-#include "rsa/insert.hpp"
 #include "run/analyze.hpp"
 #include "run/bed.hpp"
 #include "run/counters.hpp"
 #include "run/files.hpp"
+#include "run/fill.hpp"
 #include "run/journal.hpp"
-#include "run/judge.hpp"
 #include "run/keeper.hpp"
 #include "run/record.hpp"
 #include "run/restart.hpp"
-#include "run/settle.hpp"
+#include "run/search.hpp"
 #include "run/start.hpp"
-#include "scene/expectation.hpp"
-#include "scene/limits.hpp"
 
 namespace packmpi::run {
 namespace {
-
-void insert_layer(Bed& bed, Keeper& keeper) {
-  const scene::Scene& scene = bed.scene;
-  pack::Progress& at = bed.progress;
-  bed.store.set_ghosts(0);
-  const rsa::LayerRegion region = bed.next_region();
-  const LocalIndex before = bed.store.owned();
-  const auto look = [&] { keeper.look_while_inserting(before); };
-  const Stopwatch watch;
-  const rsa::Insertion got = rsa::insert(bed.comm, scene, bed.ownership, region, bed.store, look);
-  bed.inserting += watch.seconds();
-  at.first_ids.push_back(at.count);
-  at.energy_given += observe::energy_of(bed.comm, bed.store, scene, at.count, at.count + got.inserted);
-  at.count += got.inserted;
-  report::LayerRow& row = at.now.row;
-  row.inserted = got.inserted;
-  row.attempts = got.trials;
-  row.total = at.count;
-  row.target_fraction = scene.in.layers.fraction;
-  row.achieved_fraction = got.solid_volume / (scene.container.floor_area() * region.thickness);
-  row.region_bottom = region.bottom;
-}
-
-void settle_layer(Bed& bed, Journal& journal, Keeper& keeper) {
-  const Settled settled = settle(bed, journal, keeper, Part::layer);
-  bed.progress.compaction_rate = settled.compaction_rate;
-  report::LayerRow& row = bed.progress.now.row;
-  row.steps = settled.steps;
-  row.duration = settled.seconds;
-  row.stop_reason = settled.early ? "settled" : insertion_alone(bed.scene.in) ? "inserted" : "duration";
-}
-
-void measure_layer(Bed& bed) {
-  const scene::Scene& scene = bed.scene;
-  const observe::Contacts contacts = observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(),
-                                                       bed.neighborhood.walls(), bed.progress.moving_from);
-  const observe::Motion motion = observe::motion(bed.comm, bed.store, scene);
-  report::LayerRow& row = bed.progress.now.row;
-  row.height = bed.height();
-  row.top = bed.top();
-  row.max_overlap = contacts.max_overlap;
-  row.coordination = contacts.coordination;
-  const double mgd = motion.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
-  row.kinetic_per_mgd = mgd > 0.0 ? motion.kinetic_energy / mgd : 0.0;
-}
-
-// The final stage: every particle moves for scene.relaxation, and on until the bed is at rest, for scene.wait at most.
-// The height is that after it. A bed that is at rest and had no window has none.
-void relax(Bed& bed, Journal& journal, Keeper& keeper) {
-  pack::Progress& at = bed.progress;
-  const bool needed = bed.scene.relaxation > 0.0 || at.moving_from > 0;
-  if (!needed && !(bed.scene.wait > 0.0)) return;
-  bed.release();
-  bed.balance();
-  journal.relaxation_started();
-  const double height_before = at.height;
-  const Settled settled = settle(bed, journal, keeper, Part::relaxation);
-  if (settled.steps > 0) at.compaction_rate = settled.compaction_rate;
-  if (!needed && settled.steps == 0) return journal.relaxation_not_needed();
-  at.height_before_relaxation = height_before;
-  ++at.relaxations;
-  at.height = bed.height();
-  journal.relaxed(at.height, settled.seconds);
-}
-
-void insert_and_settle(Bed& bed, Journal& journal, Keeper& keeper) {
-  pack::Progress& at = bed.progress;
-  if (at.now.phase == pack::Phase::insertion) {
-    insert_layer(bed, keeper);
-    bed.freeze_older();
-    bed.balance();
-    journal.layer_inserted(at.now.row);
-    at.now.phase = pack::Phase::settling;
-  }
-  settle_layer(bed, journal, keeper);
-  measure_layer(bed);
-  journal.layer_settled(at.now.row);
-  at.height = at.now.row.height;
-  at.layers.push_back(at.now.row);
-  comm::agree_on(bed.comm, [&] { check_energy(bed.scene, at.layers); });
-}
-
-// What a bed sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
-double sinks_by(const input::Input& in) {
-  constexpr double rough = 0.3;
-  if (in.dynamics.rotation) return 0.45;
-  return in.contact.friction > rough ? 1.1 : 0.6;
-}
-
-// The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
-// too few costs a second final stage, in which all that lies there creeps again.
-double final_height(const scene::Scene& scene, const pack::Progress& at) {
-  if (!(scene.relaxation > 0.0) || at.layers.empty() || at.layers.back().stop_reason == taken_over) return at.height;
-  const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
-  if (over) return at.height;
-  return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
-}
-
-// Collective. Does the bed take another layer?
-bool takes_more(const Bed& bed) {
-  const std::int64_t count = bed.scene.in.particles.count;
-  if (insertion_alone(bed.scene.in)) return bed.progress.count == 0;
-  if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene)) return false;
-  if (count > 0) return bed.progress.count < count && !bed.full();
-  if (bed.scene.in.layers.region == input::RegionRule::container) return !bed.full();
-  return final_height(bed.scene, bed.progress) < bed.scene.container.height();
-}
-
-// The loop of Algorithm 1, and the final stage; more layers if the bed sank in it. From where bed.progress says.
-// Bounded.
-void fill(Bed& bed, Journal& journal, Keeper& keeper) {
-  pack::Progress& at = bed.progress;
-  const auto more = [&] { return takes_more(bed); };
-  while (at.now.phase != pack::Phase::insertion || more()) {
-    if (at.now.phase == pack::Phase::relaxation) {
-      relax(bed, journal, keeper);
-      at.now = {};
-    } else {
-      insert_and_settle(bed, journal, keeper);
-      at.now = {.phase = more() ? pack::Phase::insertion : pack::Phase::relaxation};
-    }
-    keeper.layer_ended();
-  }
-}
 
 void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record) {
   const observe::Contacts contacts =
@@ -227,19 +95,60 @@ void tell_rest(const comm::Comm& comm, const report::RunRecord& record) {
   for (const std::string& words : record.missed) log::warn("missed: " + words);
 }
 
+// A run's own: the journal tells, the keeper ends.
+class Watch final : public Attendant {
+ public:
+  Watch(Journal& journal, Keeper& keeper) : journal_(journal), keeper_(keeper) {}
+  void layer_inserted(const report::LayerRow& row) override { journal_.layer_inserted(row); }
+  void moment(double share) override { journal_.moment(share); }
+  void remark(const std::string& line) override { log::info(line); }
+  void layer_settled(const report::LayerRow& row) override { journal_.layer_settled(row); }
+  void layer_measured(const control::Filling& filling) override { journal_.layer_measured(filling); }
+  void relaxation_started() override { journal_.relaxation_started(); }
+  void relaxation_not_needed() override { journal_.relaxation_not_needed(); }
+  void relaxed(double height, double duration) override { journal_.relaxed(height, duration); }
+  [[nodiscard]] std::int64_t steps_to_look() const override { return keeper_.steps_to_look(); }
+  void look() override { keeper_.look(); }
+  void layer_ended() override { keeper_.layer_ended(); }
+  void look_while_inserting(LocalIndex before) override { keeper_.look_while_inserting(before); }
+
+ private:
+  Journal& journal_;
+  Keeper& keeper_;
+};
+
+// Is there a checkpoint to go on from? It knows the filling.
+bool goes_on(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  if (options.restart.empty() || options.restart != "auto") return !options.restart.empty();
+  const Files files = files_of(scene.in.name, options);
+  const bool there = comm.rank() == 0 && (is_there(files.slots[0]) || is_there(files.slots[1]));
+  return comm.max(std::int64_t{there ? 1 : 0}) > 0;
+}
+
+// How a run towards a target begins, found before anything is written.
+control::Filling begin_filling(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  if (!scene.in.target || goes_on(comm, scene, options)) return {};
+  check_files(comm, scene, options);
+  return find_filling(comm, scene);
+}
+
 // The pack in its file; the particles are let go.
-report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files) {
+report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files,
+                       const control::Filling& filling) {
   const Stopwatch watch;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   for (const std::string& remark : scene.in.remarks) log::info(remark);
   Bed bed(comm, scene);
+  bed.progress.filling = filling;
   const Origin origin = resume(files, options, bed);
   if (scene.in.start && !origin.restarted) take_over(bed);
   const pack::Progress before = bed.progress;
   Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted);
   Keeper keeper(bed, journal, files, options, origin);
-  fill(bed, journal, keeper);
+  Watch watch_over(journal, keeper);
+  journal.filling_begins();
+  fill(bed, watch_over);
   report::RunRecord record = targets_of(comm, scene);
   record.series_rows_in_file = journal.finish();
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
@@ -259,8 +168,9 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
 }  // namespace
 
 report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+  const control::Filling filling = begin_filling(comm, scene, options);
   const Claim claim = claim_files(comm, scene, options);
-  report::RunRecord record = make(comm, scene, options, claim.files);
+  report::RunRecord record = make(comm, scene, options, claim.files, filling);
   if (scene.in.output.analysis) (void)analyze(comm, claim.files.pack);
   if (record.series_rows_lost > 0) {
     comm::fail_together(comm, ExitCode::io_failure,

@@ -8,7 +8,8 @@
 #include "dynamics/kernel.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
-#include "run/judge.hpp"
+#include "report/judge.hpp"
+#include "run/search.hpp"
 #include "run/start.hpp"
 
 namespace packmpi::run {
@@ -39,6 +40,23 @@ void forget_limits_of_rest(std::vector<report::Criterion>& criteria) {
   for (report::Criterion& c : criteria) {
     if (!c.of_overlap) c.limit = std::numeric_limits<double>::infinity();
   }
+}
+
+report::DensityTarget density_target(const Bed& bed) {
+  const control::Filling& filling = bed.progress.filling;
+  if (!filling.on) return {};
+  report::DensityTarget target{.key = target_key(*bed.scene.in.target),
+                               .fraction = filling.target,
+                               .tolerance = bed.scene.in.target->tolerance,
+                               .friction = {},
+                               .rolling_friction = {},
+                               .buried = filling.layer_fractions};
+  for (const control::Knob knob : filling.layer_knobs) {
+    const scene::Friction friction = control::friction_of(bed.scene.in, knob);
+    target.friction.push_back(friction.particles);
+    target.rolling_friction.push_back(friction.rolling);
+  }
+  return target;
 }
 
 void audit(const Bed& bed, report::RunRecord& record) {
@@ -79,7 +97,7 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.compiler = compiler();
   record.architecture = dynamics::kernel_architecture();
   record.petsc_options = comm::petsc_options_in_use();
-  record.criteria = judge(scene, {});  // their limits; the values come with the bed
+  record.criteria = report::judge(scene, {});  // their limits; the values come with the bed
   return record;
 }
 
@@ -91,6 +109,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   const observe::Motion motion = observe::motion(comm, bed.store, scene);
   const observe::SizeStatistics sizes = observe::sizes(comm, bed.store);
   const pack::Progress& at = bed.progress;
+  record.density = density_target(bed);
   record.particles = at.count;
   record.height = at.height;
   const bool full = bed.full();
@@ -128,9 +147,9 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.particle_steps = at.particle_steps;
   record.bytes_per_particle = bed.bytes_per_particle();
   audit(bed, record);
-  record.criteria = judge(scene, record.rest);
+  record.criteria = report::judge(scene, record.rest);
   if (scene.in.start && at.steps == 0) forget_limits_of_rest(record.criteria);
-  record.missed = missed_targets(scene, record);
+  record.missed = report::missed_targets(scene, record);
   record.targets_met = record.missed.empty();
 }
 

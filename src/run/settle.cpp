@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "observe/measure.hpp"
 #include "observe/rest.hpp"
-#include "run/judge.hpp"
+#include "report/judge.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -118,18 +119,18 @@ struct Criterion {
 };
 
 // Says it when a criterion is met for the first time in this part.
-void tell(Bed& bed, const Plan& plan, const Criterion& criterion, std::int64_t bit) {
+void tell(Bed& bed, const Plan& plan, const Criterion& criterion, std::int64_t bit, Attendant& attendant) {
   pack::PhaseProgress& now = bed.progress.now;
   const double time = static_cast<double>(now.done) * plan.stage.time_step;
   log::debug(fmt::format("{} {:.2e} after {:.4g} s", criterion.words, criterion.value, time));
   if (!criterion.met() || (now.told & bit) != 0) return;
   now.told |= bit;
-  log::info(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", bed.progress.first_ids.size(),
-                        criterion.words, criterion.value, criterion.limit, time));
+  attendant.remark(fmt::format("layer {:3d}: {} {:.2e}, below {:g}, after {:.4g} s", bed.progress.first_ids.size(),
+                               criterion.words, criterion.value, criterion.limit, time));
 }
 
 // Are all criteria met? The dear one, which costs about two steps, is looked at only if the others are.
-bool is_calm(Bed& bed, const Plan& plan) {
+bool is_calm(Bed& bed, const Plan& plan, Attendant& attendant) {
   pack::PhaseProgress& now = bed.progress.now;
   const input::Dynamics& limits = bed.scene.in.dynamics;
   const double g = bed.scene.in.jamming.gravity;
@@ -140,20 +141,20 @@ bool is_calm(Bed& bed, const Plan& plan) {
   now.mean_height = motion.mean_height;
   const Criterion energy{"KE/(m g d)", motion.kinetic_energy / (motion.mass * g * d), limits.settled_energy};
   const Criterion sinking{"drift/sqrt(g d)", drift, limits.settled_drift};
-  tell(bed, plan, energy, 1);
-  tell(bed, plan, sinking, 2);
+  tell(bed, plan, energy, 1, attendant);
+  tell(bed, plan, sinking, 2, attendant);
   if (!energy.met() || !sinking.met()) return false;
   const double ratio = observe::unbalanced_force(bed.comm, bed.store, bed.scene, bed.stepper.law(), bed.neighborhood,
                                                  bed.progress.moving_from);
   const Criterion balance{"unbalanced force ratio", ratio, limits.settled_force};
-  tell(bed, plan, balance, 4);
+  tell(bed, plan, balance, 4, attendant);
   return balance.met();
 }
 
 // Looks whether the moving particles have come to rest, and for how long. True if long enough.
-bool has_settled(Bed& bed, const Plan& plan) {
+bool has_settled(Bed& bed, const Plan& plan, Attendant& attendant) {
   pack::PhaseProgress& now = bed.progress.now;
-  if (!is_calm(bed, plan)) {
+  if (!is_calm(bed, plan, attendant)) {
     now.calm_since = -1;
     return false;
   }
@@ -190,9 +191,16 @@ bool is_over(Bed& bed, const Plan& plan) {
   log::debug(
       fmt::format("unbalanced force ratio {:.2e}, KE/(m g d) {:.2e}, support {:.4f} at step {} of the final stage",
                   rest.unbalanced_force, rest.kinetic_energy, rest.support, now.done));
-  if (at_rest(judge(bed.scene, rest))) return true;
+  if (report::at_rest(report::judge(bed.scene, rest))) return true;
   now.phi_before = phi_of_moving(bed);
   return false;
+}
+
+// None: the scene's own.
+std::optional<scene::Friction> friction_in(const Bed& bed, Part part) {
+  const control::Filling& filling = bed.progress.filling;
+  if (!filling.on || part == Part::relaxation) return std::nullopt;
+  return control::friction_of(bed.scene.in, filling.layer_knobs.back());
 }
 
 }  // namespace
@@ -209,9 +217,10 @@ std::vector<double> hardening(double soft, double hard) {
   return moduli;
 }
 
-Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part) {
+Settled settle(Bed& bed, Attendant& attendant, Part part) {
   pack::PhaseProgress& now = bed.progress.now;
   const Plan plan = plan_of(bed.scene, part);
+  const std::optional<scene::Friction> friction = friction_in(bed, part);
   if (plan.look_every > 0 && now.done == 0) {
     now.mean_height = observe::motion(bed.comm, bed.store, bed.scene).mean_height;
   }
@@ -220,17 +229,17 @@ Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part) {
   while (!over) {
     if (plan.stops(now.done)) bed.stop();  // after a checkpoint of this step: a restart judges what the run judged
     if (now.done == plan.rate_from) now.phi_before = phi_of_moving(bed);
-    const std::int64_t next = std::min(plan.next(now.done), now.done + keeper.steps_to_look());
-    bed.stepper.use({plan.stage.time_step, plan.modulus(now.done)});
+    const std::int64_t next = std::min(plan.next(now.done), now.done + attendant.steps_to_look());
+    bed.stepper.use({plan.stage.time_step, plan.modulus(now.done), friction});
     bed.advance(next - now.done);
     if (part == Part::relaxation) bed.progress.relaxation_steps += next - now.done;
     now.done = next;
-    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan);
+    if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan, attendant);
     over = early || is_over(bed, plan);
     if (next % plan.log_every == 0 || next == plan.steps || over) {
-      journal.moment(static_cast<double>(next) / static_cast<double>(std::max(next, plan.steps)));
+      attendant.moment(static_cast<double>(next) / static_cast<double>(std::max(next, plan.steps)));
     }
-    if (!early) keeper.look();  // a part that is over goes on with what comes after it
+    if (!early) attendant.look();  // a part that is over goes on with what comes after it
   }
   bed.check();  // what comes next takes all particles to be valid
   return result(bed, plan, early);

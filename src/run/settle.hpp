@@ -4,9 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "run/attendant.hpp"
 #include "run/bed.hpp"
-#include "run/journal.hpp"
-#include "run/keeper.hpp"
 
 namespace packmpi::run {
 
@@ -22,9 +21,9 @@ struct Settled {
   bool early = false;            ///< the criteria of stop = "settled" held before the duration was over
 };
 
-/// Collective. Integrates a part of the run from bed.progress.now on to its end; `keeper` may end it, by an Error,
-/// before. What is frozen adds nothing to the compaction rate.
-[[nodiscard]] Settled settle(Bed& bed, Journal& journal, Keeper& keeper, Part part);
+/// Collective. Integrates a part of the run from bed.progress.now on to its end; `attendant` may end it, by an
+/// Error, before. What is frozen adds nothing to the compaction rate.
+[[nodiscard]] Settled settle(Bed& bed, Attendant& attendant, Part part);
 
 /// Steps of a part at most; fewer if stop = "settled" ends it. Local.
 [[nodiscard]] std::int64_t steps_of(const scene::Scene& scene, Part part);

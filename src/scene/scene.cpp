@@ -93,11 +93,13 @@ void check_periodic(const input::Input& in, const Scene& scene) {
   }
 }
 
-// What a window left frozen needs a time of its own to come to rest under what was put onto it (doc/theory.md).
+// What a window left frozen, or was filled in with another friction, needs a time of its own to come to rest under what
+// was put onto it (doc/theory.md).
 double choose_relaxation(const input::Input& in) {
   constexpr double usual = 0.9;  // [s]
   if (insertion_alone(in)) return 0.0;
-  return in.dynamics.relaxation.value_or(in.dynamics.window > 0 || softer(in) ? usual : 0.0);
+  const bool changes = in.dynamics.window > 0 || softer(in) || in.target.has_value();
+  return in.dynamics.relaxation.value_or(changes ? usual : 0.0);
 }
 
 // Ten falls through the whole height, for the final stage to come to rest in (doc/theory.md, "Rest").
@@ -126,7 +128,8 @@ Features features_of(const input::Input& in) {
   f.rotation = in.dynamics.rotation;
   f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
   f.memory = f.friction && in.contact.tangential == input::Tangential::mindlin;
-  f.rolling = f.memory && (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0);
+  f.rolling = f.memory && (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0 ||
+                           (in.target && in.target->most_rolling_friction > 0.0));
   f.drag = in.drag.coefficient > 0.0;
   f.near_field = in.near_field.has_value();
   f.graded = in.particles.radius.distribution != input::SizeDistribution::equal;

@@ -1,6 +1,7 @@
 /// What is packed: the input turned into the quantities the method needs. The same on every rank, O(1) in size.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "geometry/columns.hpp"
 #include "geometry/container.hpp"
@@ -10,10 +11,22 @@
 
 namespace packmpi::scene {
 
+/// Coefficients of friction [-].
+struct Friction {
+  double particles = 0.0, walls = 0.0;   ///< sliding
+  double rolling = 0.0, twisting = 0.0;  ///< resistance; friction with memory only
+};
+
+/// What the scene says of it. Local.
+[[nodiscard]] constexpr Friction own_friction(const input::Contact& contact) noexcept {
+  return {contact.friction, contact.wall_friction, contact.rolling_friction, contact.twisting_friction};
+}
+
 /// How particles are integrated for a while.
 struct Stage {
-  double time_step = 0.0;       ///< [s]
-  double youngs_modulus = 0.0;  ///< [Pa]
+  double time_step = 0.0;                 ///< [s]
+  double youngs_modulus = 0.0;            ///< [Pa]
+  std::optional<Friction> friction = {};  ///< none: the scene's own
 };
 
 /// The scene. `in` is what was asked; the rest is derived from it.

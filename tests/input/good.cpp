@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/starter.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"
@@ -17,7 +18,6 @@
 #include "input/read.hpp"
 #include "input/restitution.hpp"
 #include "input/rhythm.hpp"
-#include "input/starter.hpp"
 #include "input/time_step.hpp"
 #include "tables/sieve_table.hpp"
 #include "tables/units.hpp"
@@ -739,7 +739,7 @@ std::string all_in(const std::string& text) {
 
 TEST(Starter, IsAScene) {
   for (const int dimension : {2, 3}) {
-    const std::string text = starter(dimension);
+    const std::string text = cli::starter(dimension);
     const Input in = parse(text, "scene.toml", {});
     EXPECT_EQ(in.container.dimension, dimension);
     EXPECT_EQ(parse(all_in(text), "scene.toml", {}).effective, in.effective) << "what is commented out is the default";

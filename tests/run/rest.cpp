@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "run/judge.hpp"
+#include "report/judge.hpp"
 #include "run/make_pack.hpp"
 #include "support/placed_bed.hpp"
 
@@ -220,8 +220,8 @@ std::vector<std::string> missed(const input::Input& in, const observe::Rest& res
   report::RunRecord record;
   record.reached = true;
   record.rest = rest;
-  record.criteria = judge(scene, rest);
-  return missed_targets(scene, record);
+  record.criteria = report::judge(scene, rest);
+  return report::missed_targets(scene, record);
 }
 
 TEST(Judge, RestIsNothingMissed) {
@@ -292,7 +292,7 @@ TEST(Judge, HeightAndAuditAreTargetsToo) {
   record.target_height = 1.0;
   record.audit = {
       .expected = 10, .found = 9, .non_finite = 1, .worst_overlap = 0.6, .worst_wall_penetration = 0.0, .outside = 2};
-  EXPECT_THAT(missed_targets(scene, record),
+  EXPECT_THAT(report::missed_targets(scene, record),
               ElementsAre(HasSubstr("0.5 m of 1 m"), HasSubstr("9 of 10"), HasSubstr("1 particles are not finite"),
                           HasSubstr("2 particles are outside"), HasSubstr("0.6 of a radius")));
 }
@@ -305,12 +305,12 @@ std::vector<report::LayerRow> layers_of(const std::vector<double>& energies) {
 
 TEST(Judge, AnEnergyThatGrowsFromLayerToLayerEndsTheRun) {
   const scene::Scene scene = scene::build(judged_input());
-  EXPECT_NO_THROW(check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 0.1, 0.1})));          // too few layers
-  EXPECT_NO_THROW(check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 0.1, 5e-3, 0.1})));    // one is quiet
-  EXPECT_NO_THROW(check_energy(scene, layers_of({1e-2, 2e-2, 2.1e-2, 0.1, 0.1, 0.1})));   // less than five times
-  EXPECT_NO_THROW(check_energy(scene, layers_of({1e-6, 1e-6, 1e-6, 9e-3, 9e-3, 9e-3})));  // nothing to speak of
+  EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 0.1, 0.1})));         // too few layers
+  EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 0.1, 5e-3, 0.1})));   // one is quiet
+  EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-2, 2e-2, 2.1e-2, 0.1, 0.1, 0.1})));  // less than five times
+  EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-6, 1e-6, 1e-6, 9e-3, 9e-3, 9e-3})));  // nothing to speak of
   try {
-    check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 5e-3, 0.02, 0.03, 0.04}));
+    report::check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 5e-3, 0.02, 0.03, 0.04}));
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::numerical_failure);
@@ -351,7 +351,7 @@ report::RunRecord pack(const input::Input& in) {
 TEST(Rest, TheFinalStageGoesOnUntilTheBedIsAtRest) {
   const report::RunRecord record = pack(brick());
   EXPECT_THAT(record.missed, IsEmpty());
-  EXPECT_TRUE(at_rest(record.criteria));
+  EXPECT_TRUE(report::at_rest(record.criteria));
   EXPECT_GE(record.relaxations, 1);
   EXPECT_EQ(record.relaxation_steps % 250, 0) << "fiftieths of the longest wait";
   EXPECT_LT(record.relaxation_steps, 12500 * record.relaxations);

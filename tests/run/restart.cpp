@@ -12,11 +12,11 @@
 #include <functional>
 #include <sstream>
 
+#include "base/signals.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "run/make_pack.hpp"
 #include "run/scene_change.hpp"
-#include "run/signals.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {

@@ -39,6 +39,10 @@ COMMANDS = {
     "packmpi estimate input/quickstart.toml": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --floor 0.6,open --no-probe --json": "",
+    "packmpi limits input/quickstart.toml": "--set layers.duration=0.01 --set dynamics.relaxation=0.01 --set rest.wait=0 --set container.size=[0.3,0.3,0.2]",
+    "packmpi estimate input/quickstart.toml --set target.porosity=0.40 --no-probe": "",
+    "packmpi input/quickstart.toml --set target.porosity=0.40 -o porosity":
+        ("--set target.porosity=0.40", "--set target.porosity=0.6 --set target.tolerance=0.5 --set container.size=[0.3,0.3,0.2] --set dynamics.relaxation=0.01 " + SMALL),
     "packmpi analyze quickstart.hdf": "",
     "packmpi plot quickstart.hdf": "--only density",
     "packmpi report quickstart.hdf": "--size 150",
@@ -51,7 +55,7 @@ NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
-          "quickstart.html", "quickstart.lammps.data", "made/figure_4.png"]
+          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
 
 problems = []

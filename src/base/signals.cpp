@@ -1,10 +1,10 @@
-#include "run/signals.hpp"
+#include "base/signals.hpp"
 
 #include <array>
 #include <csignal>
 #include <cstddef>
 
-namespace packmpi::run {
+namespace packmpi {
 namespace {
 
 volatile std::sig_atomic_t checkpoint_wanted = 0;
@@ -63,4 +63,4 @@ Wish take_wish() {
   return Wish::checkpoint;
 }
 
-}  // namespace packmpi::run
+}  // namespace packmpi

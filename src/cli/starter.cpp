@@ -1,4 +1,4 @@
-#include "input/starter.hpp"
+#include "cli/starter.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,10 @@
 #include "input/read.hpp"
 #include "input/values.hpp"
 
-namespace packmpi::input {
+namespace packmpi::cli {
+
+using namespace input;
+
 namespace {
 
 constexpr std::size_t width = 100;  // columns of a comment
@@ -72,7 +75,8 @@ std::string starter(int dimension) {
   for (const Key& key : keys()) {
     const std::string_view table = split_path(key.path).first;
     if (table != open) {  // a table that is there only if it is named stays away
-      const bool absent = (!in.near_field && table == "near_field") || (!in.start && table == "start");
+      const bool absent = (!in.near_field && table == "near_field") || (!in.start && table == "start") ||
+                          (!in.target && table == "target");
       text += fmt::format("\n{}[{}]\n", absent ? "# " : "", table);
     }
     open = table;
@@ -81,4 +85,4 @@ std::string starter(int dimension) {
   return text;
 }
 
-}  // namespace packmpi::input
+}  // namespace packmpi::cli

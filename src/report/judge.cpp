@@ -1,4 +1,4 @@
-#include "run/judge.hpp"
+#include "report/judge.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/voids.hpp"
 #include "input/time_step.hpp"
 #include "scene/expectation.hpp"
 
-namespace packmpi::run {
+namespace packmpi::report {
 namespace {
 
 constexpr double deepest = 0.5;  // of a radius: no valid pack has such overlaps
@@ -62,23 +63,35 @@ std::string how_much_harder(const scene::Scene& scene, double overlap, double li
                      1.1 * modulus);
 }
 
-std::string limit_words(const report::Criterion& c) {
+std::string words_of_limit(const Criterion& c) {
   if (c.target == 0.0) return fmt::format("the limit is {:g}", c.limit);
   return fmt::format("it is to be {:g} within {:g}", c.target, c.limit);
 }
 
-void add_rest(const scene::Scene& scene, const report::RunRecord& record, std::vector<std::string>& missed) {
+void add_rest(const scene::Scene& scene, const RunRecord& record, std::vector<std::string>& missed) {
   const bool rests = at_rest(record.criteria);
-  for (const report::Criterion& c : record.criteria) {
+  for (const Criterion& c : record.criteria) {
     if (c.met()) continue;
     const bool overlap = c.of_overlap;
     const bool soft = overlap && (rests || scene::expected_overlap(scene, scene.in.particles.youngs_modulus) > c.limit);
-    missed.push_back(fmt::format("rest.{}: the {} is {:.3g}, {}; {}", c.name, c.words, c.value, limit_words(c),
+    missed.push_back(fmt::format("rest.{}: the {} is {:.3g}, {}; {}", c.name, c.words, c.value, words_of_limit(c),
                                  soft ? how_much_harder(scene, c.value, c.limit) : why_it_moves(scene)));
   }
 }
 
-void add_audit(const report::Audit& audit, std::vector<std::string>& missed) {
+void add_density(const RunRecord& record, std::vector<std::string>& missed) {
+  const DensityTarget& wanted = record.density;
+  const double off = record.phi_bulk - wanted.fraction;
+  if (!wanted.on() || std::abs(off) <= wanted.tolerance) return;
+  missed.push_back(
+      fmt::format("{}: the bulk has solid fraction {:.4f} (porosity {:.4f}, void ratio {:.4f}), it is to be {:.4f} "
+                  "within {:g}; use "
+                  "thinner layers, which correct more often, another seed, or a wider target.tolerance",
+                  wanted.key, record.phi_bulk, porosity(record.phi_bulk), void_ratio(record.phi_bulk), wanted.fraction,
+                  wanted.tolerance));
+}
+
+void add_audit(const Audit& audit, std::vector<std::string>& missed) {
   if (audit.found != audit.expected) {
     missed.push_back(fmt::format("{} of {} particles are there", audit.found, audit.expected));
   }
@@ -95,7 +108,7 @@ void add_audit(const report::Audit& audit, std::vector<std::string>& missed) {
 
 }  // namespace
 
-std::vector<report::Criterion> judge(const scene::Scene& scene, const observe::Rest& rest) {
+std::vector<Criterion> judge(const scene::Scene& scene, const observe::Rest& rest) {
   const input::Rest& limits = scene.in.rest;
   const bool moves = !insertion_alone(scene.in);
   const bool weighs = moves && scene.in.jamming.gravity > 0.0;
@@ -125,11 +138,11 @@ std::vector<report::Criterion> judge(const scene::Scene& scene, const observe::R
            .of_overlap = true}};
 }
 
-bool at_rest(const std::vector<report::Criterion>& criteria) {
-  return std::ranges::all_of(criteria, [](const report::Criterion& c) { return c.of_overlap || c.met(); });
+bool at_rest(const std::vector<Criterion>& criteria) {
+  return std::ranges::all_of(criteria, [](const Criterion& c) { return c.of_overlap || c.met(); });
 }
 
-std::vector<std::string> missed_targets(const scene::Scene& scene, const report::RunRecord& record) {
+std::vector<std::string> missed_targets(const scene::Scene& scene, const RunRecord& record) {
   std::vector<std::string> missed;
   if (!record.reached && record.target_particles > 0) {
     missed.push_back(
@@ -141,18 +154,17 @@ std::vector<std::string> missed_targets(const scene::Scene& scene, const report:
                     "are ({})",
                     record.height, record.target_height, record.layers.size(), record.stop_reason));
   }
+  add_density(record, missed);
   add_audit(record.audit, missed);
   add_rest(scene, record, missed);
   return missed;
 }
 
-void check_energy(const scene::Scene& scene, const std::vector<report::LayerRow>& layers) {
+void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers) {
   constexpr std::size_t few = 3;
   constexpr double growth = 5.0, noticeable = 0.01;  // [-], m g d
   if (layers.size() < 2 * few) return;
-  const auto less = [](const report::LayerRow& a, const report::LayerRow& b) {
-    return a.kinetic_per_mgd < b.kinetic_per_mgd;
-  };
+  const auto less = [](const LayerRow& a, const LayerRow& b) { return a.kinetic_per_mgd < b.kinetic_per_mgd; };
   const double most_before = std::max_element(layers.begin(), layers.begin() + few, less)->kinetic_per_mgd;
   const double least_now = std::min_element(layers.end() - few, layers.end(), less)->kinetic_per_mgd;
   if (!(least_now > std::max({growth * most_before, noticeable, scene.in.rest.kinetic_energy}))) return;
@@ -163,4 +175,4 @@ void check_energy(const scene::Scene& scene, const std::vector<report::LayerRow>
                   layers.size(), most_before, few, least_now, few, why_it_moves(scene)));
 }
 
-}  // namespace packmpi::run
+}  // namespace packmpi::report

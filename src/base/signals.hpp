@@ -1,7 +1,7 @@
 /// What the outside wants of a run: signals, caught and kept until somebody looks.
 #pragma once
 
-namespace packmpi::run {
+namespace packmpi {
 
 /// Bits of what signals have asked of this process since the last look.
 enum class Wish : unsigned { none = 0, checkpoint = 1, stop = 2 };
@@ -25,4 +25,4 @@ class Signals {
 /// a wish to stop is not. Local.
 [[nodiscard]] Wish take_wish();
 
-}  // namespace packmpi::run
+}  // namespace packmpi

@@ -1,0 +1,152 @@
+#include "run/fill.hpp"
+
+#include <cmath>
+
+#include "base/timer.hpp"
+#include "control/filling.hpp"
+#include "observe/measure.hpp"
+#include "report/judge.hpp"
+#include "rsa/insert.hpp"
+#include "run/settle.hpp"
+#include "run/start.hpp"
+#include "scene/expectation.hpp"
+#include "scene/limits.hpp"
+
+namespace packmpi::run {
+namespace {
+
+void insert_layer(Bed& bed, Attendant& attendant) {
+  const scene::Scene& scene = bed.scene;
+  pack::Progress& at = bed.progress;
+  bed.store.set_ghosts(0);
+  const rsa::LayerRegion region = bed.next_region();
+  const LocalIndex before = bed.store.owned();
+  const auto look = [&] { attendant.look_while_inserting(before); };
+  const Stopwatch watch;
+  const rsa::Insertion got = rsa::insert(bed.comm, scene, bed.ownership, region, bed.store, look);
+  bed.inserting += watch.seconds();
+  at.first_ids.push_back(at.count);
+  at.energy_given += observe::energy_of(bed.comm, bed.store, scene, at.count, at.count + got.inserted);
+  at.count += got.inserted;
+  if (at.filling.on) at.filling.layer_knobs.push_back(at.filling.knob);
+  report::LayerRow& row = at.now.row;
+  row.inserted = got.inserted;
+  row.attempts = got.trials;
+  row.total = at.count;
+  row.target_fraction = scene.in.layers.fraction;
+  row.achieved_fraction = got.solid_volume / (scene.container.floor_area() * region.thickness);
+  row.region_bottom = region.bottom;
+}
+
+void settle_layer(Bed& bed, Attendant& attendant) {
+  const Settled settled = settle(bed, attendant, Part::layer);
+  bed.progress.compaction_rate = settled.compaction_rate;
+  report::LayerRow& row = bed.progress.now.row;
+  row.steps = settled.steps;
+  row.duration = settled.seconds;
+  row.stop_reason = settled.early ? "settled" : insertion_alone(bed.scene.in) ? "inserted" : "duration";
+}
+
+void measure_layer(Bed& bed) {
+  const scene::Scene& scene = bed.scene;
+  const observe::Contacts contacts = observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(),
+                                                       bed.neighborhood.walls(), bed.progress.moving_from);
+  const observe::Motion motion = observe::motion(bed.comm, bed.store, scene);
+  report::LayerRow& row = bed.progress.now.row;
+  row.height = bed.height();
+  row.top = bed.top();
+  row.max_overlap = contacts.max_overlap;
+  row.coordination = contacts.coordination;
+  const double mgd = motion.mass * scene.in.jamming.gravity * 2.0 * scene.sizes.mean();  // of all particles together
+  row.kinetic_per_mgd = mgd > 0.0 ? motion.kinetic_energy / mgd : 0.0;
+}
+
+// What the buried part of the bed has come to corrects the friction that the next layer is filled in with.
+void measure_filling(Bed& bed, Attendant& attendant) {
+  const double surface = bed.surface();
+  const control::Slab slab = control::buried(surface, 2.0 * bed.scene.sizes.mean());
+  control::correct(bed.progress.filling, surface, slab, slab.depth() > 0.0 ? bed.fraction_of(slab) : 0.0);
+  attendant.layer_measured(bed.progress.filling);
+}
+
+// The final stage: every particle moves for scene.relaxation, and on until the bed is at rest, for scene.wait at most.
+// The height is that after it. A bed that is at rest and had no window has none.
+void relax(Bed& bed, Attendant& attendant) {
+  pack::Progress& at = bed.progress;
+  const bool needed = bed.scene.relaxation > 0.0 || at.moving_from > 0;
+  if (!needed && !(bed.scene.wait > 0.0)) return;
+  bed.release();
+  bed.balance();
+  attendant.relaxation_started();
+  const double height_before = at.height;
+  const Settled settled = settle(bed, attendant, Part::relaxation);
+  if (settled.steps > 0) at.compaction_rate = settled.compaction_rate;
+  if (!needed && settled.steps == 0) return attendant.relaxation_not_needed();
+  at.height_before_relaxation = height_before;
+  ++at.relaxations;
+  at.height = bed.height();
+  attendant.relaxed(at.height, settled.seconds);
+}
+
+void insert_and_settle(Bed& bed, Attendant& attendant) {
+  pack::Progress& at = bed.progress;
+  if (at.now.phase == pack::Phase::insertion) {
+    insert_layer(bed, attendant);
+    bed.freeze_older();
+    bed.balance();
+    attendant.layer_inserted(at.now.row);
+    at.now.phase = pack::Phase::settling;
+  }
+  settle_layer(bed, attendant);
+  measure_layer(bed);
+  attendant.layer_settled(at.now.row);
+  if (at.filling.on) measure_filling(bed, attendant);
+  at.height = at.now.row.height;
+  at.layers.push_back(at.now.row);
+  comm::agree_on(bed.comm, [&] { report::check_energy(bed.scene, at.layers); });
+}
+
+// What a bed sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
+double sinks_by(const input::Input& in) {
+  constexpr double rough = 0.3;
+  if (in.dynamics.rotation) return 0.45;
+  return in.contact.friction > rough ? 1.1 : 0.6;
+}
+
+// The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
+// too few costs a second final stage, in which all that lies there creeps again.
+double final_height(const scene::Scene& scene, const pack::Progress& at) {
+  if (!(scene.relaxation > 0.0) || at.layers.empty() || at.layers.back().stop_reason == taken_over) return at.height;
+  const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
+  if (over) return at.height;
+  return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+}
+
+// Collective. Does the bed take another layer?
+bool takes_more(const Bed& bed) {
+  const std::int64_t count = bed.scene.in.particles.count;
+  if (insertion_alone(bed.scene.in)) return bed.progress.count == 0;
+  if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene)) return false;
+  if (count > 0) return bed.progress.count < count && !bed.full();
+  if (bed.scene.in.layers.region == input::RegionRule::container) return !bed.full();
+  return final_height(bed.scene, bed.progress) < bed.scene.container.height();
+}
+
+}  // namespace
+
+void fill(Bed& bed, Attendant& attendant) {
+  pack::Progress& at = bed.progress;
+  const auto more = [&] { return takes_more(bed); };
+  while (at.now.phase != pack::Phase::insertion || more()) {
+    if (at.now.phase == pack::Phase::relaxation) {
+      relax(bed, attendant);
+      at.now = {};
+    } else {
+      insert_and_settle(bed, attendant);
+      at.now = {.phase = more() ? pack::Phase::insertion : pack::Phase::relaxation};
+    }
+    attendant.layer_ended();
+  }
+}
+
+}  // namespace packmpi::run

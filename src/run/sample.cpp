@@ -1,0 +1,114 @@
+#include "run/sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/volume.hpp"
+#include "observe/measure.hpp"
+#include "run/bed.hpp"
+#include "run/fill.hpp"
+#include "scene/expectation.hpp"
+
+namespace packmpi::run {
+namespace {
+
+constexpr double few = 4000.0;               // particles: a scene of no more is its own sample
+constexpr double sample_particles = 2500.0;  // particles of a sample
+// Least lengths of a sample, in diameters of a particle of mean volume, and in largest ones.
+constexpr double height_in_mean = 14.0, height_in_largest = 6.0, side_in_mean = 6.0, side_in_columns = 4.0;
+constexpr double least_layers = 2.0;
+
+double mean_volume(const scene::Scene& scene) {
+  const int dimension = scene.container.dimension;
+  return geometry::volume(dimension, 1.0) * scene.sizes.curve().moment(dimension);
+}
+
+double particles_in(const scene::Scene& scene) {
+  const double fraction = scene::expected_fraction(scene).value;
+  return static_cast<double>(scene::expected_layers(scene, fraction) * scene::particles_a_layer(scene));
+}
+
+double sample_height(const scene::Scene& scene, double mean_diameter) {
+  const double rise = scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  const double least =
+      std::max({height_in_mean * mean_diameter, height_in_largest * 2.0 * scene.sizes.largest(), least_layers * rise});
+  return std::min(scene.container.height(), least);
+}
+
+// A sample has not the whole list, but the same sizes as often.
+void draw_from_list(input::Radius& radius) {
+  std::ranges::sort(radius.radii);
+  radius.distribution = input::SizeDistribution::discrete;
+  radius.weighting = input::Weighting::number;
+  radius.shares.assign(radius.radii.size(), 1.0 / static_cast<double>(radius.radii.size()));
+}
+
+input::Input smaller(const scene::Scene& scene) {
+  const double volume = mean_volume(scene);
+  const int dimension = scene.container.dimension;
+  const double mean_diameter = 2.0 * std::pow(scene.sizes.curve().moment(dimension), 1.0 / dimension);
+  input::Input in = scene.in;
+  in.particles.count = 0;  // as high as a sample is
+  if (in.particles.radius.distribution == input::SizeDistribution::list) draw_from_list(in.particles.radius);
+  in.container.size.back() = sample_height(scene, mean_diameter);
+  const double area =
+      sample_particles * volume / (scene::expected_fraction(scene).value * in.container.size.back());  // 2D: a length
+  const double side = std::max(
+      {dimension == 3 ? std::sqrt(area) : area, side_in_mean * mean_diameter, side_in_columns * scene.column_width()});
+  for (std::size_t axis = 0; axis < in.container.boundary.size(); ++axis) {
+    if (!(side < in.container.size[axis])) continue;
+    in.container.size[axis] = side;
+    in.container.boundary[axis] = input::Boundary::periodic;
+  }
+  return in;
+}
+
+// By the walls that the scene has and the sample has not; at equal heights, whose surfaces make up for each other.
+double wall_scale(scene::Scene scene, const scene::Scene& sample) {
+  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
+  scene.container.size[vertical] = sample.container.size[vertical];
+  scene.in.particles.count = 0;
+  return scene::expected_fraction(scene).value / scene::expected_fraction(sample).value;
+}
+
+// Looks at the bulk when the final stage begins.
+class Onlooker final : public Attendant {
+ public:
+  explicit Onlooker(const Bed& bed) : bed_(bed) {}
+  void relaxation_started() override { filled_ = measured(); }
+  [[nodiscard]] double filled() const noexcept { return filled_; }
+  [[nodiscard]] double measured() const {
+    return observe::density(bed_.comm, bed_.store, bed_.scene, bed_.bulk()).phi_bulk;
+  }
+
+ private:
+  const Bed& bed_;
+  double filled_ = 0.0;
+};
+
+}  // namespace
+
+Sample sample_of(const scene::Scene& scene) {
+  const double particles = particles_in(scene);
+  if (particles <= few) return {.scene = scene, .whole = true, .particles = particles};
+  Sample sample{.scene = scene::build(smaller(scene))};
+  sample.scale = wall_scale(scene, sample.scene);
+  sample.particles = particles_in(sample.scene);
+  return sample;
+}
+
+control::Trial try_knob(const Sample& sample, control::Knob knob) {
+  const comm::Comm alone(MPI_COMM_SELF);
+  Bed bed(alone, sample.scene);
+  bed.progress.filling.on = true;
+  bed.progress.filling.knob = knob;
+  Onlooker onlooker(bed);
+  fill(bed, onlooker);
+  const double relaxed = onlooker.measured();
+  const double filled = onlooker.filled() > 0.0 ? onlooker.filled() : relaxed;
+  const observe::Contacts contacts =
+      observe::contacts(alone, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
+  return {knob, sample.scale * filled, sample.scale * relaxed, contacts.coordination};
+}
+
+}  // namespace packmpi::run

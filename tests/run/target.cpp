@@ -1,0 +1,153 @@
+// A density to order: the same bits on any number of ranks, after a stop, and refusals before anything is written.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "input/read.hpp"
+#include "pack/pack.hpp"
+#include "report/judge.hpp"
+#include "run/fill.hpp"
+#include "run/make_pack.hpp"
+#include "run/record.hpp"
+#include "run/search.hpp"
+
+namespace packmpi::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string scene_text =
+    "[container]\nsize = [0.12, 0.1, 0.1]\nboundary = [\"periodic\", \"periodic\"]\n"
+    "[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e7\npoisson_ratio = 0.25\n"
+    "radius = { distribution = \"equal\", value = 0.01 }\n"
+    "[layers]\nthickness = 0.1\nfraction = 0.25\nduration = 0.15\n[jamming]\ngravity = 9.81\n[drag]\ncoefficient = "
+    "0.137\n"
+    "[contact]\ntangential = \"mindlin\"\nfriction = 0.5\n[dynamics]\ntime_step = 1e-4\nrelaxation = 0.05\n"
+    "[rest]\nwait = 0\nunbalanced_force = 1e9\nkinetic_energy = 1e9\nsupport = 1e9\n[output]\nlog_every = 0.1\n"
+    "[target]\nsolid_fraction = 0.58\ntolerance = 0.03\n";
+
+class Target : public ::testing::Test {
+ protected:
+  const comm::Comm comm_{MPI_COMM_WORLD};
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_target_" + std::to_string(comm_.size()));
+  std::vector<std::string> changes_;
+
+  void SetUp() override {
+    if (comm_.rank() == 0) fs::remove_all(folder_);
+    comm_.barrier();
+  }
+  [[nodiscard]] scene::Scene scene() const { return scene::build(input::parse(scene_text, "box.toml", {changes_})); }
+  [[nodiscard]] Options options(const std::string& where, std::int64_t max_steps = 0) const {
+    Options o;
+    o.folder = (folder_ / where).string();
+    o.verbosity = log::Verbosity::quiet;
+    o.max_steps = max_steps;
+    return o;
+  }
+  [[nodiscard]] pack::PackRows pack(const std::string& where) const {
+    comm_.barrier();
+    return pack::read_pack((folder_ / where / "box.hdf").string());
+  }
+};
+
+void expect_same(const pack::PackRows& a, const pack::PackRows& b) {
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.radius, b.radius);
+}
+
+TEST_F(Target, IsMetWithTheSameBitsOnAnyNumberOfRanksAndAfterAStop) {
+  const report::RunRecord record = make_pack(comm_, scene(), options("whole"));
+  EXPECT_TRUE(record.targets_met) << report::missed_words(record, "; ");
+  EXPECT_NEAR(record.phi_bulk, 0.58, 0.03);
+  EXPECT_EQ(record.density.key, "target.solid_fraction");
+  ASSERT_EQ(record.density.friction.size(), record.layers.size());
+  EXPECT_GT(record.density.friction.front(), input::least_filling_friction);
+  if (comm_.rank() == 0) {
+    (void)make_pack(comm::Comm(MPI_COMM_SELF), scene(), options("alone"));
+  }
+  expect_same(pack("whole"), pack("alone"));
+}
+
+// A curve that is given, so that every layer that is measured turns the knob.
+control::Filling some_filling() {
+  control::Filling filling = control::curve_of({{0.0, 0.64, 0.64, 6.0}, {1.0, 0.57, 0.57, 4.5}});
+  filling.on = true;
+  filling.target = 0.6;
+  filling.knob = control::knob_for(filling, filling.target);
+  return filling;
+}
+
+control::Filling filled_on(const comm::Comm& comm, const scene::Scene& scene) {
+  Bed bed(comm, scene);
+  bed.progress.filling = some_filling();
+  Attendant nobody;
+  fill(bed, nobody);
+  return bed.progress.filling;
+}
+
+TEST_F(Target, LayersTurnTheKnobAlikeOnAnyNumberOfRanks) {
+  changes_ = {"container.size=[0.12, 0.1, 0.3]", "layers.duration=0.05", "dynamics.window=2"};
+  const scene::Scene tall = scene();
+  const control::Filling here = filled_on(comm_, tall);
+  const control::Filling alone = filled_on(comm::Comm(MPI_COMM_SELF), tall);
+  EXPECT_EQ(here.layer_knobs, alone.layer_knobs);
+  EXPECT_EQ(here.layer_surfaces, alone.layer_surfaces);
+  EXPECT_EQ(here.layer_fractions, alone.layer_fractions);
+  EXPECT_NE(here.layer_knobs.back(), here.layer_knobs.front());
+}
+
+TEST_F(Target, StopsAndGoesOnToTheSameBits) {
+  (void)make_pack(comm_, scene(), options("through"));
+  for (const std::int64_t steps : {100, 700}) {
+    const std::string where = "stopped_" + std::to_string(steps);
+    EXPECT_THROW((void)make_pack(comm_, scene(), options(where, steps)), Error);
+    Options on = options(where);
+    on.restart = "auto";
+    const report::RunRecord record = make_pack(comm_, scene(), on);
+    EXPECT_EQ(record.density.key, "target.solid_fraction");
+    expect_same(pack("through"), pack(where));
+  }
+}
+
+TEST_F(Target, WhatCannotBeIsRefusedWithBothLimitsBeforeAnythingIsWritten) {
+  changes_ = {"target.solid_fraction=0.72"};
+  try {
+    (void)make_pack(comm_, scene(), options("never"));
+    ADD_FAILURE() << "made";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    const std::string words = error.what();
+    for (const char* part : {"target.solid_fraction", "0.7200", "porosity 0.2800", "out of what this scene can have"}) {
+      EXPECT_NE(words.find(part), std::string::npos) << words;
+    }
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "never" / "box.log"));
+}
+
+TEST_F(Target, MissedIsSaidByName) {
+  report::RunRecord record = targets_of(comm_, scene());
+  record.reached = true;
+  record.phi_bulk = 0.61;
+  record.density.key = "target.porosity";
+  record.density.fraction = 0.6;
+  record.density.tolerance = 0.002;
+  record.missed = report::missed_targets(scene(), record);
+  EXPECT_NE(report::missed_words(record, "; ").find("target.porosity: the bulk has"), std::string::npos);
+}
+
+TEST_F(Target, SamplesOfLargeScenesAreSmallAndLoseTheirWalls) {
+  changes_ = {"container.size=[1.0, 0.16, 1.0]", "container.boundary=[\"wall\", \"wall\"]"};
+  const Sample sample = sample_of(scene());
+  EXPECT_FALSE(sample.whole);
+  EXPECT_EQ(sample.scene.in.container.size[1], 0.16);
+  EXPECT_EQ(sample.scene.in.container.boundary[1], input::Boundary::wall);
+  EXPECT_EQ(sample.scene.in.container.boundary[0], input::Boundary::periodic);
+  EXPECT_LT(sample.scale, 1.0);
+  EXPECT_GT(sample.particles, 1500.0);
+  EXPECT_LT(sample.particles, 4000.0);
+}
+
+}  // namespace
+}  // namespace packmpi::run
