@@ -149,5 +149,22 @@ TEST_F(Target, SamplesOfLargeScenesAreSmallAndLoseTheirWalls) {
   EXPECT_LT(sample.particles, 4000.0);
 }
 
+TEST_F(Target, ASampleOfAListHasItsSizesAsOftenAndAHeightOfItsOwn) {
+  input::Input in = scene().in;
+  in.container.size = {1.0, 1.0, 1.0};
+  in.particles.radius.distribution = input::SizeDistribution::list;
+  for (int k = 0; k < 60000; ++k) in.particles.radius.radii.push_back(k % 3 == 0 ? 0.012 : 0.009);
+  in.particles.count = 60000;
+  const scene::Scene whole = scene::build(in);
+  const Sample sample = sample_of(whole);
+  EXPECT_FALSE(sample.whole);
+  EXPECT_EQ(sample.scene.in.particles.count, 0);
+  EXPECT_NEAR(sample.scene.sizes.mean(), 0.01, 1e-12);
+  EXPECT_NEAR(sample.scene.sizes.curve().moment(3), whole.sizes.curve().moment(3), 1e-15);
+  EXPECT_EQ(sample.scene.sizes.largest(), 0.012);
+  EXPECT_GT(sample.particles, 1500.0);
+  EXPECT_LT(sample.particles, 4000.0);
+}
+
 }  // namespace
 }  // namespace packmpi::run
