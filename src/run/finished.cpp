@@ -5,11 +5,11 @@
 #include "base/log.hpp"
 #include "disk/lock.hpp"
 #include "pack/pack.hpp"
+#include "pack/scene_change.hpp"
 #include "packmpi/version.hpp"
 #include "report/summary.hpp"
 #include "run/analyze.hpp"
 #include "run/files.hpp"
-#include "run/scene_change.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -40,10 +40,10 @@ std::uint64_t whole_pack(const comm::Comm& comm, const Files& files) {
 
 void check_scene(const Files& files, const scene::Scene& scene) {
   const pack::PackOrigin origin = pack::read_origin(files.pack);
-  const Writer writer{origin.scene, origin.version, origin.git};
-  const std::string changes = changes_since(writer, scene.in.effective, RunIs::finished, files.pack);
+  const pack::Writer writer{origin.scene, origin.version, origin.git};
+  const std::string changes = pack::changes_since(writer, scene.in.effective, pack::RunIs::finished, files.pack);
   if (!changes.empty()) refuse(files, fmt::format("{} is of another scene: {}", files.pack, changes));
-  if (is_this_program(writer)) return;
+  if (pack::is_this_program(writer)) return;
   log::warn(fmt::format("{} was made by packmpi {} ({}), this is {} ({}), which may make other bits", files.pack,
                         writer.version, writer.git, version(), git_id()));
 }

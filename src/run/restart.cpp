@@ -8,18 +8,18 @@
 
 #include "base/log.hpp"
 #include "pack/checkpoint.hpp"
+#include "pack/scene_change.hpp"
 #include "packmpi/version.hpp"
-#include "run/scene_change.hpp"
 
 namespace packmpi::run {
 namespace {
 
-Writer writer_of(const pack::RunState& state) { return {state.effective_input, state.version, state.git}; }
+pack::Writer writer_of(const pack::RunState& state) { return {state.effective_input, state.version, state.git}; }
 
 /// Throws on a scene that is not the checkpoint's. Local.
 void check_scene(const pack::RunState& state, const scene::Scene& scene, const std::string& path) {
   const std::string changes =
-      changes_since(writer_of(state), scene.in.effective, RunIs::unfinished, "checkpoint " + path);
+      pack::changes_since(writer_of(state), scene.in.effective, pack::RunIs::unfinished, "checkpoint " + path);
   if (changes.empty()) return;
   throw Error(ExitCode::bad_checkpoint,
               fmt::format("checkpoint {} is of another scene: {}; undo the change, or begin anew with --force and "
@@ -141,7 +141,7 @@ Origin resume(const Files& files, const Options& options, Bed& bed) {
   }
   pack::Histories histories;
   const auto [state, path] = read_first(paths, passed_over, bed, histories);
-  if (!is_this_program(writer_of(state))) {
+  if (!pack::is_this_program(writer_of(state))) {
     log::warn(fmt::format("{} was written by packmpi {} ({}), this is {} ({}): the bits of the pack may differ", path,
                           state.version, state.git, version(), git_id()));
   }

@@ -11,8 +11,8 @@
 #include "input/read.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
+#include "pack/scene_change.hpp"
 #include "report/json_seal.hpp"
-#include "run/scene_change.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -51,7 +51,7 @@ void check_radii(const scene::Scene& scene, double smallest, double largest) {
 
 // Do particles feel other forces than where they came to rest?
 bool feels_anew(const input::Input& source, const scene::Scene& scene) {
-  const std::string changes = forbidden_changes(source.effective, scene.in.effective, RunIs::finished);
+  const std::string changes = pack::forbidden_changes(source.effective, scene.in.effective, pack::RunIs::finished);
   constexpr std::array tables{"contact.",          "jamming.",          "drag.",
                               "near_field.",       "particles.density", "particles.youngs",
                               "particles.poisson", "dynamics.rotation"};

@@ -15,8 +15,8 @@
 #include "base/signals.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
+#include "pack/scene_change.hpp"
 #include "run/make_pack.hpp"
-#include "run/scene_change.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -598,9 +598,9 @@ TEST(SceneChange, OnlyWhatChangesBits) {
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string now = before;
     now.replace(now.find(from), from.size(), to);
-    return forbidden_changes(before, now);
+    return pack::forbidden_changes(before, now);
   };
-  EXPECT_EQ(forbidden_changes(before, before), "");
+  EXPECT_EQ(pack::forbidden_changes(before, before), "");
   EXPECT_EQ(with("maximum = 0", "maximum = 9"), "");
   EXPECT_EQ(with("log_every = 0.1", "log_every = 0.2"), "");
   EXPECT_EQ(with("seed = 1", "seed = 2"), "seed: 1 before, 2 now");

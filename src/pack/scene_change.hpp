@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace packmpi::run {
+namespace packmpi::pack {
 
 /// How far the run is whose scene is compared.
 enum class RunIs { unfinished, finished };
@@ -27,4 +27,4 @@ struct Writer {
 [[nodiscard]] std::string changes_since(const Writer& writer, const std::string& now, RunIs run,
                                         const std::string& what);
 
-}  // namespace packmpi::run
+}  // namespace packmpi::pack

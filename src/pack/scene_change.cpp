@@ -1,4 +1,4 @@
-#include "run/scene_change.hpp"
+#include "pack/scene_change.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "input/read.hpp"
 #include "packmpi/version.hpp"
 
-namespace packmpi::run {
+namespace packmpi::pack {
 namespace {
 
 /// key path -> value, of an effective input: a line "[table]" or "key = value" each.
@@ -76,4 +76,4 @@ std::string changes_since(const Writer& writer, const std::string& now, RunIs ru
   }
 }
 
-}  // namespace packmpi::run
+}  // namespace packmpi::pack
