@@ -8,7 +8,6 @@ small: 950 spheres, periodic, eight layers, ten seeds: 8 minutes of one core. br
 results/convergence. Packs of a scene hold equally many spheres.
 """
 import argparse
-import csv
 import math
 import statistics
 
@@ -73,10 +72,7 @@ def main():
     parser.add_argument("--doc", type=measuring.Path, default=measuring.ROOT / "doc")
     options = parser.parse_args()
     rows = list(rows_of(options))
-    with open(options.doc / "data/convergence.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    measuring.write_csv(options.doc / "data/convergence.csv", COLUMNS, rows)
     print("\n".join(table(rows)))
     if (options.doc / "rest.md").exists():
         measuring.write_block(options.doc / "rest.md", "convergence", "\n".join([f"{measuring.made_by('scripts/study/convergence.py')}.", "", *table(rows)]))

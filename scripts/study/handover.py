@@ -8,7 +8,6 @@ Sinking: loss of phi_bulk, less than zero for a pack that rises; displacement: o
 energy, of translation, is looked at every hundredth of the steps. Ten minutes of one core, YADE most of it.
 """
 import argparse
-import csv
 import re
 import shutil
 import sys
@@ -131,10 +130,7 @@ def main():
     if missing:
         sys.exit(f"handover: not installed: {' '.join(missing)}; scripts/setup.sh --peers, or Debian's packages")
     rows = [row for name in options.scenes for row in measure(options, name)]
-    with open(options.doc / "data/handover.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    measuring.write_csv(options.doc / "data/handover.csv", COLUMNS, rows)
     print("\n".join(table(rows)))
     if (options.doc / "rest.md").exists():
         measuring.write_block(options.doc / "rest.md", "handover", "\n".join([f"{measuring.made_by('scripts/study/handover.py')}. {options.steps} steps.", "", *table(rows)]))

@@ -1,5 +1,6 @@
 """What the scripts that measure packs share: scenes that leave their protocol to a preset, one analysis for the packs of any code, where and
 when something was measured, and how a block of a document is written anew."""
+import csv
 import datetime
 import os
 import statistics
@@ -95,6 +96,14 @@ def spread(values, digits=1, scale=1.0):
     if len(values) == 1:
         return f"{values[0]:.{digits}f}"
     return f"{statistics.median(values):.{digits}f} ({values[0]:.{digits}f} to {values[-1]:.{digits}f})"
+
+
+def write_csv(path, columns, rows):
+    """A table of the documentation's data: a line a row, empty where a row has no such column."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=columns, lineterminator="\n", restval="")
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def write_block(document, name, text):

@@ -124,10 +124,7 @@ def read_rows(path):
 
 def write_rows(path, rows):
     order = list(SCENES)
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n", restval="")
-        writer.writeheader()
-        writer.writerows(sorted(rows, key=lambda row: (order.index(row["scene"]), list(SETTINGS).index(row["setting"]), int(row["seed"]))))
+    measuring.write_csv(path, COLUMNS, sorted(rows, key=lambda row: (order.index(row["scene"]), list(SETTINGS).index(row["setting"]), int(row["seed"]))))
 
 
 def measure(options):

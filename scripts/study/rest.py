@@ -98,10 +98,7 @@ def main():
     options = parser.parse_args()
     data = options.doc / "data/rest.csv"
     rows = merged(data, [] if options.report_only else measure(options))
-    with open(data, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    measuring.write_csv(data, COLUMNS, rows)
     rest_report.write(options.doc, rows)
 
 

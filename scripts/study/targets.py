@@ -7,7 +7,6 @@ usage: scripts/study/targets.py [--scenes NAME ...] [--shares S ...] [--seed N] 
 All scenes: about an hour of one core. Runs are remembered in results/targets; the table has what is there.
 """
 import argparse
-import csv
 import json
 import subprocess
 import time
@@ -139,10 +138,7 @@ def main():
     parser.add_argument("--doc", type=measuring.Path, default=measuring.ROOT / "doc")
     options = parser.parse_args()
     rows = list(rows_of(options))
-    with open(options.doc / "data/targets.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    measuring.write_csv(options.doc / "data/targets.csv", COLUMNS, rows)
     print("\n".join(table(rows)))
     measuring.write_block(options.doc / "howto_porosity.md", "targets", "\n".join([f"{measuring.made_by('scripts/study/targets.py')}.", "", *table(rows)]))
 

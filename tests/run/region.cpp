@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "geometry/volume.hpp"
 #include "rsa/insert.hpp"
 #include "run/bed.hpp"
 #include "run/make_pack.hpp"
 #include "scene/limits.hpp"
+#include "support/packed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -35,18 +35,7 @@ input::Input scene_of(int dimension, bool graded, RegionRule region) {
   return in;
 }
 
-report::RunRecord pack(const input::Input& in) {
-  const comm::Comm comm(MPI_COMM_WORLD);
-  Options options;
-  options.folder = std::filesystem::temp_directory_path() / ("packmpi_region_" + std::to_string(::getppid()));
-  options.force = true;
-  options.verbosity = log::Verbosity::quiet;
-  const report::RunRecord record = make_pack(comm, scene::build(in), options);
-  comm.barrier();
-  if (comm.rank() == 0) std::filesystem::remove_all(options.folder);
-  comm.barrier();
-  return record;
-}
+report::RunRecord pack(const input::Input& in) { return test::packed(in, "region"); }
 
 class Region : public ::testing::TestWithParam<std::tuple<int, bool>> {
  protected:

@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 
 #include "report/judge.hpp"
 #include "run/make_pack.hpp"
+#include "support/packed.hpp"
 #include "support/placed_bed.hpp"
 
 namespace packmpi::run {
@@ -335,18 +335,7 @@ input::Input brick() {
   return in;
 }
 
-report::RunRecord pack(const input::Input& in) {
-  const comm::Comm comm(MPI_COMM_WORLD);
-  Options options;
-  options.folder = std::filesystem::temp_directory_path() / ("packmpi_rest_" + std::to_string(::getppid()));
-  options.force = true;
-  options.verbosity = log::Verbosity::quiet;
-  const report::RunRecord record = make_pack(comm, scene::build(in), options);
-  comm.barrier();
-  if (comm.rank() == 0) std::filesystem::remove_all(options.folder);
-  comm.barrier();
-  return record;
-}
+report::RunRecord pack(const input::Input& in) { return test::packed(in, "rest"); }
 
 TEST(Rest, TheFinalStageGoesOnUntilTheBedIsAtRest) {
   const report::RunRecord record = pack(brick());

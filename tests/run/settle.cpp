@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "run/make_pack.hpp"
+#include "support/packed.hpp"
 #include "support/scenes.hpp"
 
 namespace packmpi::run {
@@ -27,18 +27,7 @@ input::Input brick() {
   return in;
 }
 
-report::RunRecord pack(const input::Input& in) {
-  const comm::Comm comm(MPI_COMM_WORLD);
-  Options options;
-  options.folder = std::filesystem::temp_directory_path() / ("packmpi_settle_" + std::to_string(::getppid()));
-  options.force = true;
-  options.verbosity = log::Verbosity::quiet;
-  const report::RunRecord record = make_pack(comm, scene::build(in), options);
-  comm.barrier();
-  if (comm.rank() == 0) std::filesystem::remove_all(options.folder);
-  comm.barrier();
-  return record;
-}
+report::RunRecord pack(const input::Input& in) { return test::packed(in, "settle"); }
 
 void expect_valid(const report::RunRecord& record) {
   EXPECT_EQ(record.audit.found, record.audit.expected);
