@@ -18,7 +18,8 @@ Analysis analyse(const Specimen& pack) {
   for (int axis = 0; axis < pack.scene.container.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
   a.segregation = segregation(pack);
   a.pairs = pair_distribution(pack);
-  a.network = network(pack.comm, pack.store, pack.scene, pack.neighborhood);
+  a.springs = pack.springs;
+  a.rest = rest(pack.comm, pack.store, pack.scene, pack.neighborhood);
   a.forces = forces(pack);
   a.floor_force = floor_force(pack.comm, pack.store, pack.scene, pack.neighborhood.walls());
   a.weight = motion(pack.comm, pack.store, pack.scene).mass * pack.scene.in.jamming.gravity;

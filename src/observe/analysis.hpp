@@ -31,6 +31,9 @@ struct Specimen {
   double range;    ///< [m] of the near pairs
   double surface;  ///< [m] surface_height()
   Bulk bulk;       ///< measures "of the bulk" take the particles whose centres are there
+  /// What the contacts remember is in the neighborhood, if the scene's friction has memory. Without it forces lack
+  /// their springs, and nothing can be said of rest.
+  bool springs = true;
 };
 
 /// Collective.
@@ -98,7 +101,8 @@ struct Analysis {
   std::vector<Profile> density;  ///< along x, y(, z)
   Segregation segregation;
   PairDistribution pairs;
-  Network network;
+  bool springs = true;  ///< see Specimen
+  Rest rest;            ///< only its overlaps and network without springs
   Forces forces;
   double floor_force = 0.0;  ///< [N]
   double weight = 0.0;       ///< [N]

@@ -22,6 +22,10 @@ void sort_by_ends(std::vector<HistoryRow>& rows);
 /// Throws Error(bad_checkpoint), words without the path, if a contact is there twice. Local.
 void check_once(const std::vector<HistoryRow>& sorted);
 
+/// Throws Error(bad_checkpoint), words without the path, if a spring is longer than the friction of `scene` can hold.
+/// Local.
+void check_springs(const Histories& histories, const scene::Scene& scene);
+
 /// A number of the bits of these rows that depends on no order: sums over ranks, mod 2^64, are that of all rows. Local.
 [[nodiscard]] std::uint64_t digest(const Histories& histories);
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "pack/checkpoint.hpp"
+#include "pack/histories.hpp"
 #include "pack/pack.hpp"
 
 namespace packmpi::pack {
@@ -49,6 +50,8 @@ double longest_spring(const scene::Scene& scene, double friction) {
   return friction * moduli / 6.0 * (1.0 + 20.0 * in.contact.damping_ratio) * 0.5 * scene.sizes.largest();
 }
 
+}  // namespace
+
 void check_springs(const Histories& histories, const scene::Scene& scene) {
   const input::Contact& contact = scene.in.contact;
   const std::array longest{longest_spring(scene, std::max(contact.friction, contact.wall_friction)),
@@ -68,8 +71,6 @@ void check_springs(const Histories& histories, const scene::Scene& scene) {
     }
   }
 }
-
-}  // namespace
 
 void check_in_scene(const particles::Store& store, const Histories& histories, const scene::Scene& scene) {
   check_radii(store, scene.sizes);

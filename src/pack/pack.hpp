@@ -9,6 +9,7 @@
 #include "comm/comm.hpp"
 #include "observe/column_maps.hpp"
 #include "observe/measure.hpp"
+#include "pack/checkpoint.hpp"
 #include "particles/store.hpp"
 #include "report/record.hpp"
 #include "scene/scene.hpp"
@@ -86,6 +87,12 @@ struct PackSlice {
 };
 /// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);
+
+/// Collective, after check_pack(). What the contacts of the pack remember, each on the rank whose read_slice() has its
+/// holder; no memory in `features` if the pack has none of it: written with output.contacts = false, or of sliding
+/// friction. In 3D to the bit; in the plane to the last digit, since the pack has a vector where a number is stored.
+/// Throws Error(io_failure), also if a spring is longer than the friction of `scene` can hold.
+[[nodiscard]] Histories histories_of(const comm::Comm& comm, const std::string& path, const scene::Scene& scene);
 
 /// Throws Error(io_failure), words without the path, unless all particles of `rows` fit into `scene`: of its
 /// dimension, no larger than its largest, within its floor and walls but for a radius, and not above 10 times the

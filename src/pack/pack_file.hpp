@@ -4,6 +4,7 @@
 #include <string>
 
 #include "disk/sealed_file.hpp"
+#include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 
 namespace packmpi::pack {
@@ -22,6 +23,10 @@ class PackFile {
   /// Rows [begin, begin + count) of all particle datasets. Their shapes are checked, and that they can be particles:
   /// ids in order, numbers finite, radii above 0. Cost: O(count).
   [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
+  /// What the contacts remember, of this rank's share of their rows, wherever their particles are; no memory in
+  /// `features` if the pack has none of it. It is checked that ends can be those of two of the particles or of one and a
+  /// wall, and that numbers are finite. Cost: O(share).
+  [[nodiscard]] Histories histories(Rank rank, int ranks) const;
   [[nodiscard]] std::string scene() const;  ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;
   [[nodiscard]] double number(const char* object, const char* attribute) const;

@@ -39,6 +39,15 @@ Json order(const observe::Order& o, int dimension) {
   return json;
 }
 
+Json rest(const observe::Analysis& a) {
+  Json json{{"kinetic_energy", a.rest.kinetic_energy},
+            {"mean_overlap", a.rest.mean_overlap},
+            {"worst_overlap", a.rest.worst_overlap}};
+  json["unbalanced_force"] = a.springs ? Json(a.rest.unbalanced_force) : Json(nullptr);
+  json["support"] = a.springs ? Json(a.rest.support) : Json(nullptr);
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pack_seal) {
@@ -56,11 +65,13 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
                            {"void_ratio", void_ratio(a.local.mean)},
                            {"sd", a.local.sd},
                            {"distribution", profile(a.local.distribution)}};
-  root["contacts"] = {{"coordination", a.network.coordination},
-                      {"loose", a.network.loose},
-                      {"rattlers", a.network.rattlers},
-                      {"held_coordination", a.network.held_coordination}};
-  root["forces"] = {{"contacts", a.forces.contacts},
+  root["contacts"] = {{"coordination", a.rest.network.coordination},
+                      {"loose", a.rest.network.loose},
+                      {"rattlers", a.rest.network.rattlers},
+                      {"held_coordination", a.rest.network.held_coordination}};
+  root["rest"] = rest(a);
+  root["forces"] = {{"springs", a.springs},
+                    {"contacts", a.forces.contacts},
                     {"mean_normal_force", a.forces.mean_normal_force},
                     {"fabric", a.forces.fabric},
                     {"stress", a.forces.stress},
@@ -94,10 +105,17 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     fmt::format_to(std::back_inserter(out), "  {:<58} {:>12.5g}\n", what, value);
   };
   fmt::format_to(std::back_inserter(out), "  {:<58} {:>12}\n", "particles", a.particles);
-  line("coordination number", a.network.coordination);
-  line("share with too few contacts", a.network.loose);
-  line("rattlers, recursively", a.network.rattlers);
-  line("coordination number without rattlers", a.network.held_coordination);
+  line("coordination number", a.rest.network.coordination);
+  line("share with too few contacts", a.rest.network.loose);
+  line("rattlers, recursively", a.rest.network.rattlers);
+  line("coordination number without rattlers", a.rest.network.held_coordination);
+  if (a.springs) {
+    line("unbalanced force ratio", a.rest.unbalanced_force);
+    line("support by floor and walls / weight", a.rest.support);
+  }
+  line("kinetic energy / (m g d)", a.rest.kinetic_energy);
+  line("mean overlap / r", a.rest.mean_overlap);
+  line("worst overlap / r", a.rest.worst_overlap);
   line("local solid fraction in the bulk, mean", a.local.mean);
   line("local solid fraction in the bulk, standard deviation", a.local.sd);
   line("porosity of that mean", porosity(a.local.mean));
@@ -123,6 +141,11 @@ std::string to_table(const observe::Analysis& a, int dimension) {
   fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", "sizes", "target", "achieved");
   for (const SizeLine& size : size_lines(a.sizes)) {
     fmt::format_to(std::back_inserter(out), "  {:<44} {:>12} {:>13}\n", size.quantity, size.target, size.achieved);
+  }
+  if (!a.springs) {
+    fmt::format_to(std::back_inserter(out),
+                   "  The pack does not have what its contacts remember (output.contacts = true writes it): forces\n"
+                   "  are without the springs of friction, and unbalanced force and support are not known.\n");
   }
   return fmt::to_string(out);
 }

@@ -38,6 +38,17 @@ void take_share(const pack::PackRows& rows, particles::Store& store) {
   }
 }
 
+/// Collective. What the contacts of the pack remember, to be laid down at the next rebuild; whether all that the law of
+/// the scene needs is there.
+bool give_springs(const std::string& path, Bed& bed) {
+  const scene::Features& wanted = bed.scene.features;
+  if (!wanted.memory) return true;
+  const pack::Histories found = pack::histories_of(bed.comm, path, bed.scene);
+  if (!found.any() || found.features.rolling != wanted.rolling) return false;
+  bed.give(found);
+  return true;
+}
+
 }  // namespace
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
@@ -57,10 +68,12 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   });
   Bed bed(comm, scene);
   take_share(slice.rows, bed.store);
+  const bool springs = give_springs(path, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
-  const observe::Analysis analysis =
-      observe::analyse(observe::specimen_of(comm, scene, bed.store, bed.neighborhood, range));
+  observe::Specimen specimen = observe::specimen_of(comm, scene, bed.store, bed.neighborhood, range);
+  specimen.springs = springs;
+  const observe::Analysis analysis = observe::analyse(specimen);
   const std::filesystem::path pack(path);
   disk::write_text(comm, (pack.parent_path() / (pack.stem().string() + ".analysis.json")).string(),
                    report::to_json(analysis, scene.container.dimension, seal));

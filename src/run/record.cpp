@@ -148,7 +148,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.bytes_per_particle = bed.bytes_per_particle();
   audit(bed, record);
   record.criteria = report::judge(scene, record.rest);
-  if (scene.in.start && at.steps == 0) forget_limits_of_rest(record.criteria);
+  if (scene.in.start && at.steps == 0 && lacks_springs(scene, at)) forget_limits_of_rest(record.criteria);
   record.missed = report::missed_targets(scene, record);
   record.targets_met = record.missed.empty();
 }

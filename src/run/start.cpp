@@ -17,6 +17,10 @@
 namespace packmpi::run {
 namespace {
 
+// Reasons to stop of layers that were taken over.
+constexpr const char* without_springs = "taken over";
+constexpr const char* with_springs = "taken over, with what contacts remember";
+
 [[noreturn]] void refuse(const scene::Scene& scene, const std::string& words) {
   throw Error(ExitCode::bad_input, fmt::format("{}: {}", scene.in.file, words));
 }
@@ -90,8 +94,18 @@ std::vector<GlobalId> first_ids_of(const comm::Comm& comm, const pack::PackRows&
   return ids;
 }
 
+// Collective. What its contacts remember goes on if it is there and the law is the same; whether it does.
+bool take_springs(const std::string& path, const input::Input& source, Bed& bed) {
+  const scene::Features& wanted = bed.scene.features;
+  if (!wanted.memory || feels_anew(source, bed.scene)) return false;
+  const pack::Histories found = pack::histories_of(bed.comm, path, bed.scene);
+  if (!found.any() || found.features.rolling != wanted.rolling) return false;
+  bed.give(found);
+  return true;
+}
+
 // As if its layers had settled.
-void set_progress(Bed& bed, const std::vector<GlobalId>& first_ids) {
+void set_progress(Bed& bed, const std::vector<GlobalId>& first_ids, bool springs) {
   pack::Progress& at = bed.progress;
   at.count = bed.comm.sum(std::int64_t{bed.store.owned()});
   at.first_ids = first_ids;
@@ -101,7 +115,7 @@ void set_progress(Bed& bed, const std::vector<GlobalId>& first_ids) {
     report::LayerRow row;
     row.total = k + 1 < first_ids.size() ? first_ids[k + 1] : at.count;
     row.inserted = row.total - first_ids[k];
-    row.stop_reason = taken_over;
+    row.stop_reason = springs ? with_springs : without_springs;
     at.layers.push_back(row);
   }
   at.layers.back().height = at.height;
@@ -160,9 +174,10 @@ void take_over(Bed& bed) {
   add_particles(slice.rows, bed.store);
   const std::vector<GlobalId> first_ids = first_ids_of(bed.comm, slice.rows);
   slice = {};
+  const bool springs = take_springs(path, source, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
-  set_progress(bed, first_ids);
+  set_progress(bed, first_ids, springs);
   const double worst = check_overlaps(bed);
   if (feels_anew(source, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
   log::info(fmt::format("start: {}; deepest overlap {:.2e} radii, height {:.4g} m", taken_words(scene, bed.progress),
@@ -172,16 +187,27 @@ void take_over(Bed& bed) {
 std::string taken_words(const scene::Scene& scene, const pack::Progress& progress) {
   if (!scene.in.start) return "";
   std::int64_t layers = 0, particles = 0;
+  bool springs = false;
   for (const report::LayerRow& row : progress.layers) {
-    if (row.stop_reason != taken_over) continue;
+    if (!is_taken_over(row)) continue;
     ++layers;
     particles = row.total;
+    springs = row.stop_reason == with_springs;
   }
   return fmt::format(
-      "{} (digest {}): {} particles in {} layer{} taken over, with positions, radii, velocities{}; not "
-      "taken over: what contacts remember, time and counters",
+      "{} (digest {}): {} particles in {} layer{} taken over, with positions, radii, velocities{}{}; not taken over: "
+      "{}time and counters",
       scene.in.start->pack, scene.in.start->digest, particles, layers, layers == 1 ? "" : "s",
-      scene.features.rotation ? " and spins" : "");
+      scene.features.rotation ? ", spins" : "", springs ? ", what contacts remember" : "",
+      lacks_springs(scene, progress) ? "what contacts remember, " : "");
+}
+
+bool is_taken_over(const report::LayerRow& row) { return row.stop_reason.starts_with(without_springs); }
+
+bool lacks_springs(const scene::Scene& scene, const pack::Progress& progress) {
+  if (!scene.features.memory) return false;
+  return std::ranges::any_of(progress.layers,
+                             [](const report::LayerRow& row) { return row.stop_reason == without_springs; });
 }
 
 }  // namespace packmpi::run

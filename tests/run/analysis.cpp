@@ -102,8 +102,8 @@ TEST_F(Analysis, FaceCentredCubic) {
   EXPECT_EQ(a.local.left_out, 0);
   EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / std::sqrt(18.0), 1e-9);
   EXPECT_LT(a.local.sd, 1e-6);
-  EXPECT_NEAR(a.network.coordination, 12.0 - 8.0 * 128.0 / 2048.0, 1e-12) << "four bonds less at top and bottom";
-  EXPECT_EQ(a.network.rattlers, 0.0);
+  EXPECT_NEAR(a.rest.network.coordination, 12.0 - 8.0 * 128.0 / 2048.0, 1e-12) << "four bonds less at top and bottom";
+  EXPECT_EQ(a.rest.network.rattlers, 0.0);
   EXPECT_NEAR(a.forces.fabric[0][0] + a.forces.fabric[1][1] + a.forces.fabric[2][2], 1.0, 1e-12);
   EXPECT_NEAR(a.forces.fabric[0][0], a.forces.fabric[1][1], 1e-12);
   EXPECT_NEAR(a.forces.fabric[0][1], 0.0, 1e-12);
@@ -267,7 +267,7 @@ TEST_F(Analysis, SimpleCubic) {
   EXPECT_NEAR(a.order.q6, 0.353553, 1e-5);
   EXPECT_EQ(a.order.fcc + a.order.hcp, 0.0);
   EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / 6.0, 1e-9);
-  EXPECT_NEAR(a.network.coordination, 6.0 - 2.0 / 10.0, 1e-12);
+  EXPECT_NEAR(a.rest.network.coordination, 6.0 - 2.0 / 10.0, 1e-12);
   // The profile repeats from plane to plane, and its mean is the solid fraction.
   double mean = 0.0;
   for (std::size_t k = 0; k < 36; ++k) mean += a.density[2].values[k] / 36.0;
@@ -280,7 +280,7 @@ TEST_F(Analysis, HexagonalDiscs) {
   EXPECT_NEAR(a.order.psi6, 1.0, 1e-9);
   EXPECT_NEAR(a.order.psi6_together, 1.0, 1e-9);
   EXPECT_NEAR(a.local.mean * std::pow(squeeze, 2), std::numbers::pi / std::sqrt(12.0), 1e-9);
-  EXPECT_NEAR(a.network.coordination, 6.0 - 4.0 * 16.0 / 288.0, 1e-12);
+  EXPECT_NEAR(a.rest.network.coordination, 6.0 - 4.0 * 16.0 / 288.0, 1e-12);
 }
 
 TEST_F(Analysis, SquareDiscs) {
@@ -294,9 +294,9 @@ TEST_F(Analysis, RattlersAreReleasedOneAfterTheOther) {
   Lattice chain{.points = {}, .size = {1.0, 1.0, 0.0}};
   for (int k = 0; k < 8; ++k) chain.points.push_back({0.2 + squeeze * d * k, 0.5, 0.0});
   const observe::Analysis a = of(chain, 2);
-  EXPECT_EQ(a.network.loose, 2.0 / 8.0);
-  EXPECT_EQ(a.network.rattlers, 1.0);
-  EXPECT_EQ(a.network.held_coordination, 0.0);
+  EXPECT_EQ(a.rest.network.loose, 2.0 / 8.0);
+  EXPECT_EQ(a.rest.network.rattlers, 1.0);
+  EXPECT_EQ(a.rest.network.held_coordination, 0.0);
 }
 
 std::string contents(const std::filesystem::path& path) {

@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "input/read.hpp"
 #include "pack/pack.hpp"
 #include "report/json_seal.hpp"
+#include "run/analyze.hpp"
 #include "run/make_pack.hpp"
 
 namespace packmpi::run {
@@ -62,6 +66,12 @@ class Start : public ::testing::Test {
     }
     return "";
   }
+  [[nodiscard]] std::string analysis_of(const std::string& name) const {
+    (void)analyze(comm_, (folder_ / (name + ".hdf")).string());
+    comm_.barrier();
+    std::ifstream file(folder_ / (name + ".analysis.json"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
   [[nodiscard]] pack::PackRows rows(const std::string& name) const {
     return pack::read_pack((folder_ / (name + ".hdf")).string());
   }
@@ -86,6 +96,52 @@ TEST_F(Start, WithNothingAskedItIsEqualToTheBit) {
   EXPECT_THAT(record.start, HasSubstr("base.hdf (digest " + digest + "): "));
   EXPECT_THAT(record.effective_input, HasSubstr("digest = \"" + digest + "\""));
   EXPECT_EQ(record.layers.front().stop_reason, "taken over");
+}
+
+// The springs of the contacts are in the pack: rest is the same as before, and is judged.
+TEST_F(Start, WhatContactsRememberGoesOnIfThePackHasIt) {
+  const report::RunRecord first = make("base", "", {"output.contacts=true"});
+  const report::RunRecord record = go_on({"output.contacts=true"});
+  EXPECT_EQ(record.steps, 0);
+  expect_equal(rows("next"), rows("base"));
+  EXPECT_THAT(record.start, HasSubstr("spins, what contacts remember; not taken over: time and counters"));
+  ASSERT_GT(first.rest.unbalanced_force, 0.0);
+  EXPECT_NEAR(record.rest.unbalanced_force, first.rest.unbalanced_force, 1e-9 * first.rest.unbalanced_force);
+  EXPECT_NEAR(record.rest.support, first.rest.support, 1e-9);
+  ASSERT_EQ(record.criteria.size(), first.criteria.size());
+  for (std::size_t k = 0; k < first.criteria.size(); ++k) EXPECT_EQ(record.criteria[k].limit, first.criteria[k].limit);
+  const auto springs = [&](const char* name, const report::RunRecord& of) {
+    const scene::Scene scene = scene::build(input::parse(of.effective_input, "scene.toml", {}));
+    return pack::histories_of(comm_, (folder_ / name).string(), scene);
+  };
+  const pack::Histories before = springs("base.hdf", first), after = springs("next.hdf", first);
+  ASSERT_GT(comm_.sum(std::ssize(before.rows)), 0);
+  ASSERT_EQ(before.rows.size(), after.rows.size());
+  for (std::size_t k = 0; k < before.rows.size(); ++k) {
+    ASSERT_EQ(before.rows[k].holder, after.rows[k].holder);
+    ASSERT_EQ(before.rows[k].other, after.rows[k].other);
+    for (std::size_t c = 0; c < before.rows[k].values.size(); ++c)
+      EXPECT_NEAR(after.rows[k].values[c], before.rows[k].values[c], 1e-12 * first.mean_radius);
+  }
+}
+
+TEST_F(Start, WithoutThemRestIsNotJudgedAndItSaysSo) {
+  const report::RunRecord record = go_on({});
+  EXPECT_THAT(record.start, HasSubstr("not taken over: what contacts remember, time and counters"));
+  for (const report::Criterion& c : record.criteria) EXPECT_TRUE(c.met()) << c.words;
+}
+
+// packmpi analyze measures the rest of a pack as its run did, if the pack has the springs; else it says that it cannot.
+TEST_F(Start, AnalyzeKnowsTheRestOfAPackWithSprings) {
+  const auto analysed = [&] { return nlohmann::json::parse(analysis_of("base")); };
+  EXPECT_TRUE(analysed().at("rest").at("unbalanced_force").is_null());
+  const report::RunRecord first = make("base", "", {"output.contacts=true"});
+  const nlohmann::json rest = analysed().at("rest");
+  EXPECT_NEAR(rest.at("unbalanced_force").get<double>(), first.rest.unbalanced_force,
+              1e-9 * first.rest.unbalanced_force);
+  EXPECT_NEAR(rest.at("support").get<double>(), first.rest.support, 1e-9);
+  EXPECT_EQ(rest.at("kinetic_energy").get<double>(), first.rest.kinetic_energy);
+  EXPECT_EQ(rest.at("worst_overlap").get<double>(), first.rest.worst_overlap);
 }
 
 TEST_F(Start, GoesOnWithMoreLayers) {
