@@ -24,8 +24,8 @@ class PackFile {
   /// ids in order, numbers finite, radii above 0. Cost: O(count).
   [[nodiscard]] PackRows rows(std::int64_t begin, std::int64_t count) const;
   /// What the contacts remember, of this rank's share of their rows, wherever their particles are; no memory in
-  /// `features` if the pack has none of it. It is checked that ends can be those of two of the particles or of one and a
-  /// wall, and that numbers are finite. Cost: O(share).
+  /// `features` if the pack has none of it. It is checked that ends can be those of two of the particles or of one and
+  /// a wall, and that numbers are finite. Cost: O(share).
   [[nodiscard]] Histories histories(Rank rank, int ranks) const;
   [[nodiscard]] std::string scene() const;  ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;
