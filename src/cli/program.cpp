@@ -21,6 +21,7 @@
 #include "forecast/limits.hpp"
 #include "input/fidelity.hpp"
 #include "input/restitution.hpp"
+#include "library/advice.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
 #include "run/files.hpp"
@@ -32,47 +33,6 @@
 
 namespace packmpi::cli {
 namespace {
-
-/// On rank 0.
-void warn_of_step(const scene::Scene& scene) {
-  const double safe = scene::safe_time_step(scene.in, scene.sizes);
-  if (insertion_alone(scene.in)) return;
-  if (scene.time_step > safe) {
-    log::warn(fmt::format(
-        "time step {:g} s is beyond eq. (23) for the smallest particles ({:.3g} s), though not for the mean",
-        scene.time_step, safe));
-  }
-}
-
-/// On rank 0.
-void warn_of_softness(const scene::Scene& scene) {
-  const double modulus = scene.in.particles.youngs_modulus;
-  const double overlap = scene::expected_overlap(scene, modulus);
-  const double limit = scene.in.rest.mean_overlap;
-  if (overlap <= limit || insertion_alone(scene.in)) return;
-  log::warn(
-      fmt::format("particles.youngs_modulus: under the bed's weight particles will overlap by about {:.2g} radii "
-                  "in the mean, beyond rest.mean_overlap = {:g}: the run is going to end with code 3; {:.1e} Pa "
-                  "or more would do",
-                  overlap, limit, scene::modulus_for(scene, limit, modulus)));
-}
-
-std::string fines_words(const scene::Fines& fines) {
-  return fmt::format("the finest 5 % by mass, below {:.3g} m, are {:.0f} % of about {:.2g} particles", fines.diameter,
-                     100.0 * fines.share, fines.particles);
-}
-
-/// On rank 0.
-void warn_of_fines(const scene::Scene& scene) {
-  constexpr double many = 1e6, most = 0.5;
-  const auto fines = scene::fines(scene);
-  if (!fines || fines->particles < many || fines->share < most) return;
-  const auto& [from, to] = scene.in.particles.radius.keep_percent;
-  log::warn(
-      fmt::format("particles.radius: {}; keep_percent = [{:g}, {:g}] leaves them out, and about {:.2g} particles "
-                  "in their place",
-                  fines_words(*fines), from + 0.05 * (to - from), to, fines->without));
-}
 
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
@@ -86,7 +46,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
-    if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", fines_words(*fines));
+    if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", library::fines_words(*fines));
     if (insertion_alone(scene.in)) {
       print(words + "# insertion alone: no step is taken\n");
       return 0;
@@ -166,9 +126,7 @@ int use_scene(const comm::Comm& comm, const Request& request) {
   if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
     return ensemble::make_ensemble(comm, in, request.run);
   if (comm.rank() == 0) {
-    warn_of_step(scene);
-    warn_of_softness(scene);
-    warn_of_fines(scene);
+    for (const std::string& words : library::warnings_of(scene)) log::warn(words);
   }
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
 }

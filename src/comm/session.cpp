@@ -36,7 +36,7 @@ class WithoutVariable {
 
 }  // namespace
 
-void Session::start_petsc() {
+void Session::start_petsc(PetscRanks ranks) {
   // PETSc keeps these. Its handler would turn our TERM and USR1, and every crash, into MPI_Abort without a stack.
   static std::array<char, 8> program{"packmpi"};
   static std::array<char, 14> no_files{"-skip_petscrc"};
@@ -46,13 +46,13 @@ void Session::start_petsc() {
   static char** list = words.data();
   const WithoutVariable options("PETSC_OPTIONS");
   const WithoutVariable yaml("PETSC_OPTIONS_YAML");
-  PETSC_COMM_WORLD = MPI_COMM_WORLD;
+  PETSC_COMM_WORLD = ranks == PetscRanks::together ? MPI_COMM_WORLD : MPI_COMM_SELF;
   const PetscErrorCode failure = PetscInitialize(&count, &list, nullptr, nullptr);
   // There is no caller who could do anything about it.
   if (failure != 0) abort_all(static_cast<int>(ExitCode::numerical_failure), "PETSc failed to start");
 }
 
-Session::Session(int& argc, char**& argv) {
+Session::Session(int& argc, char**& argv, PetscRanks petsc) {
   int running = 0;
   MPI_Initialized(&running);
   if (running == 0) {
@@ -62,7 +62,7 @@ Session::Session(int& argc, char**& argv) {
   PetscBool petsc_running = PETSC_FALSE;
   PetscInitialized(&petsc_running);
   if (petsc_running == PETSC_FALSE) {
-    start_petsc();
+    start_petsc(petsc);
     owns_petsc_ = true;
   }
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // our errors have its words (comm/petsc.hpp)
@@ -72,6 +72,22 @@ Session::~Session() {
   if (!owns_petsc_) PetscPopErrorHandler();
   if (owns_petsc_) PetscFinalize();
   if (owns_mpi_) MPI_Finalize();
+}
+
+MPI_Comm world() { return MPI_COMM_WORLD; }
+
+MPI_Comm from_number(std::int64_t number) { return MPI_Comm_f2c(static_cast<MPI_Fint>(number)); }
+
+int rank_in(MPI_Comm comm) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  return rank;
+}
+
+int ranks_of(MPI_Comm comm) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  return ranks;
 }
 
 void abort_all(int code, const std::string& words) {

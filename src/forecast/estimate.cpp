@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "forecast/probe.hpp"
 #include "geometry/volume.hpp"
@@ -89,17 +90,10 @@ std::string list(const std::vector<double>& numbers) {
 }
 
 // A scene file and what the command line changes of it.
-struct Source {
-  const std::string& path;
-  const input::Overrides& overrides;
-};
+// The input with these changes of it. Collective.
+using Source = std::function<input::Input(const std::vector<std::string>& sets)>;
 
-// The scene with these changes of its file.
-scene::Scene changed(const comm::Comm& comm, const Source& source, const std::vector<std::string>& sets) {
-  input::Overrides overrides = source.overrides;
-  overrides.set.insert(overrides.set.end(), sets.begin(), sets.end());
-  return scene::build(input::read(comm, source.path, overrides));
-}
+scene::Scene changed(const Source& source, const std::vector<std::string>& sets) { return scene::build(source(sets)); }
 
 std::string size_key(const std::vector<double>& size) { return "container.size=" + list(size); }
 
@@ -137,8 +131,8 @@ void scale_floor(const Question& question, double area, std::vector<double>& siz
 }
 
 // The scene whose particles, height and floor fit together.
-scene::Scene solved(const comm::Comm& comm, const Source& source, const Question& question, Unknown& unknown) {
-  scene::Scene scene = changed(comm, source, {});
+scene::Scene solved(const Source& source, const Question& question, Unknown& unknown) {
+  scene::Scene scene = changed(source, {});
   std::vector<double> size = scene.in.container.size;
   if (question.particles && scene.in.particles.count > 0) {
     refuse(fmt::format("--particles: the scene has particles.count = {}; leave one of them out",
@@ -148,20 +142,20 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
   if (question.height) size.back() = *question.height;
   for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
     size[axis] = question.sides[axis].value_or(size[axis]);
-  if (size != scene.in.container.size) scene = changed(comm, source, {size_key(size)});
+  if (size != scene.in.container.size) scene = changed(source, {size_key(size)});
   if (unknown == Unknown::particles) return scene;
   const auto particles = static_cast<double>(*question.particles);
   if (unknown == Unknown::floor) {
     for (int turn = 0; turn < turns; ++turn) {
       scale_floor(question, fit_floor(scene, particles, fraction_of(scene, question).value), size);
-      scene = changed(comm, source, {size_key(size)});
+      scene = changed(source, {size_key(size)});
     }
     return scene;
   }
   if (scene.in.layers.region == input::RegionRule::container) {
     for (int turn = 0; turn < turns; ++turn) {
       size.back() = fit_room(scene, particles, fraction_of(scene, question).value);
-      scene = changed(comm, source, {size_key(size)});
+      scene = changed(source, {size_key(size)});
     }
     return scene;
   }
@@ -173,7 +167,7 @@ scene::Scene solved(const comm::Comm& comm, const Source& source, const Question
           fmt::format("{} particles are less than a layer on this floor; make the floor smaller (--floor)", particles));
     }
     size.back() = fitted.height;
-    scene = changed(comm, source, {size_key(size), "layers.thickness=" + tables::number(fitted.thickness)});
+    scene = changed(source, {size_key(size), "layers.thickness=" + tables::number(fitted.thickness)});
   }
   return scene;
 }
@@ -363,14 +357,15 @@ std::int64_t memory_a_rank(const scene::Scene& scene, int ranks) {
   return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) + writing_bytes * own);
 }
 
-report::Estimate estimate(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides,
-                          const Question& question) {
+namespace {
+
+report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const Question& question) {
   Unknown unknown{};
-  const scene::Scene scene = solved(comm, {path, overrides}, question, unknown);
+  const scene::Scene scene = solved(source, question, unknown);
   constexpr std::array<const char*, 3> names{"particles", "height", "floor"};
   const scene::BedFraction fraction = fraction_of(scene, question);
   report::Estimate e;
-  e.scene_file = path;
+  e.scene_file = scene.in.file;
   e.found = names.at(static_cast<std::size_t>(unknown));
   e.size = scene.in.container.size;
   e.layer_thickness = scene.in.layers.thickness;
@@ -390,6 +385,23 @@ report::Estimate estimate(const comm::Comm& comm, const std::string& path, const
   e.pack_bytes = bytes[0], e.checkpoint_bytes = bytes[1], e.step_log_bytes = bytes[2];
   if (question.probe) add_probe(comm, scene, e);
   return e;
+}
+
+}  // namespace
+
+report::Estimate estimate(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides,
+                          const Question& question) {
+  const auto source = [&](const std::vector<std::string>& sets) {
+    input::Overrides all = overrides;
+    all.set.insert(all.set.end(), sets.begin(), sets.end());
+    return input::read(comm, path, all);
+  };
+  return estimate_of(comm, source, question);
+}
+
+report::Estimate estimate(const comm::Comm& comm, const input::Input& in, const Question& question) {
+  const auto source = [&](const std::vector<std::string>& sets) { return input::parse(in.effective, in.file, {sets}); };
+  return estimate_of(comm, source, question);
 }
 
 }  // namespace packmpi::forecast

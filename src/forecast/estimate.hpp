@@ -28,6 +28,9 @@ struct Question {
 [[nodiscard]] report::Estimate estimate(const comm::Comm& comm, const std::string& path,
                                         const input::Overrides& overrides, const Question& question);
 
+/// The same of a scene that was read.
+[[nodiscard]] report::Estimate estimate(const comm::Comm& comm, const input::Input& in, const Question& question);
+
 /// Sum over the layers of the particles that move while each settles, and over the final stage, times their steps.
 /// Local, pure.
 [[nodiscard]] std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, std::int64_t a_layer);

@@ -10,6 +10,8 @@
 
 namespace packmpi::run {
 
+struct Bed;
+
 /// What fill() and settle() tell, and whom they ask. Here: nobody listens, and nothing ends the bed before its end.
 class Attendant {
  public:
@@ -26,6 +28,8 @@ class Attendant {
   virtual void relaxation_started() {}                     ///< collective; all particles move from now on
   virtual void relaxation_not_needed() {}
   virtual void relaxed(double /*height*/, double /*duration*/) {}  ///< [m], [s]
+  /// Collective. The bed is filled, and its record whole; its files, if it has any, are not yet written.
+  virtual void measured(const Bed&, const report::RunRecord&) {}
   /// Steps to make until the next look(); the same on all ranks, at least 1.
   [[nodiscard]] virtual std::int64_t steps_to_look() const { return std::numeric_limits<std::int32_t>::max(); }
   virtual void look() {}         ///< collective; may end the run by an Error

@@ -95,16 +95,28 @@ void tell_rest(const comm::Comm& comm, const report::RunRecord& record) {
   for (const std::string& words : record.missed) log::warn("missed: " + words);
 }
 
-// A run's own: the journal tells, the keeper ends.
+// A run's own: the journal tells, the keeper ends; a guest listens.
 class Watch final : public Attendant {
  public:
-  Watch(Journal& journal, Keeper& keeper) : journal_(journal), keeper_(keeper) {}
-  void layer_inserted(const report::LayerRow& row) override { journal_.layer_inserted(row); }
-  void moment(double share) override { journal_.moment(share); }
+  Watch(Journal& journal, Keeper& keeper, Attendant& guest) : journal_(journal), keeper_(keeper), guest_(guest) {}
+  void layer_inserted(const report::LayerRow& row) override {
+    journal_.layer_inserted(row);
+    guest_.layer_inserted(row);
+  }
+  void moment(double share) override {
+    journal_.moment(share);
+    guest_.moment(share);
+  }
   void remark(const std::string& line) override { log::info(line); }
-  void layer_settled(const report::LayerRow& row) override { journal_.layer_settled(row); }
+  void layer_settled(const report::LayerRow& row) override {
+    journal_.layer_settled(row);
+    guest_.layer_settled(row);
+  }
   void layer_measured(const control::Filling& filling) override { journal_.layer_measured(filling); }
-  void relaxation_started() override { journal_.relaxation_started(); }
+  void relaxation_started() override {
+    journal_.relaxation_started();
+    guest_.relaxation_started();
+  }
   void relaxation_not_needed() override { journal_.relaxation_not_needed(); }
   void relaxed(double height, double duration) override { journal_.relaxed(height, duration); }
   [[nodiscard]] std::int64_t steps_to_look() const override { return keeper_.steps_to_look(); }
@@ -115,6 +127,7 @@ class Watch final : public Attendant {
  private:
   Journal& journal_;
   Keeper& keeper_;
+  Attendant& guest_;
 };
 
 // Is there a checkpoint to go on from? It knows the filling.
@@ -132,9 +145,17 @@ control::Filling begin_filling(const comm::Comm& comm, const scene::Scene& scene
   return find_filling(comm, scene);
 }
 
+void take_time(const comm::Comm& comm, const Stopwatch& watch, const pack::Progress& before,
+               report::RunRecord& record) {
+  record.wall_seconds = comm.max(watch.seconds());
+  record.steps_here = record.steps - before.steps;
+  record.particle_steps_per_second =
+      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
+}
+
 // The pack in its file; the particles are let go.
 report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files,
-                       const control::Filling& filling) {
+                       const control::Filling& filling, Attendant& guest) {
   const Stopwatch watch;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
@@ -146,7 +167,7 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   const pack::Progress before = bed.progress;
   Journal journal(bed, files.steps, options.verbosity == log::Verbosity::quiet, origin.restarted);
   Keeper keeper(bed, journal, files, options, origin);
-  Watch watch_over(journal, keeper);
+  Watch watch_over(journal, keeper, guest);
   journal.filling_begins();
   fill(bed, watch_over);
   report::RunRecord record = targets_of(comm, scene);
@@ -156,10 +177,8 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   tell_density(record);
   tell_sizes(scene, record.sizes);
   tell_rest(comm, record);
-  record.wall_seconds = comm.max(watch.seconds());
-  record.steps_here = record.steps - before.steps;
-  record.particle_steps_per_second =
-      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
+  take_time(comm, watch, before, record);
+  guest.measured(bed, record);
   write_outputs(bed, files, record);
   keeper.finished();
   return record;
@@ -167,16 +186,32 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
 
 }  // namespace
 
-report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
+report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options,
+                            Attendant* guest) {
+  Attendant nobody;
   const control::Filling filling = begin_filling(comm, scene, options);
   const Claim claim = claim_files(comm, scene, options);
-  report::RunRecord record = make(comm, scene, options, claim.files, filling);
+  report::RunRecord record = make(comm, scene, options, claim.files, filling, guest != nullptr ? *guest : nobody);
   if (scene.in.output.analysis) (void)analyze(comm, claim.files.pack);
   if (record.series_rows_lost > 0) {
     comm::fail_together(comm, ExitCode::io_failure,
                         fmt::format("{} is written and whole, but {} rows of {} could not be: a warning above says why",
                                     claim.files.pack, record.series_rows_lost, claim.files.steps));
   }
+  return record;
+}
+
+report::RunRecord make_in_memory(const comm::Comm& comm, const scene::Scene& scene, Attendant& guest) {
+  const Stopwatch watch;
+  Bed bed(comm, scene);
+  if (scene.in.target) bed.progress.filling = find_filling(comm, scene);
+  if (scene.in.start) take_over(bed);
+  const pack::Progress before = bed.progress;
+  fill(bed, guest);
+  report::RunRecord record = targets_of(comm, scene);
+  measure_bed(bed, record);
+  take_time(comm, watch, before, record);
+  guest.measured(bed, record);
   return record;
 }
 

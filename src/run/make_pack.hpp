@@ -2,6 +2,7 @@
 #pragma once
 #include "comm/comm.hpp"
 #include "report/record.hpp"
+#include "run/attendant.hpp"
 #include "run/options.hpp"
 #include "scene/scene.hpp"
 
@@ -12,7 +13,13 @@ namespace packmpi::run {
 /// without --force; RSA cannot reach phi_0), numerical_failure, io_failure; bad_checkpoint (options.restart);
 /// stopped_early, with a checkpoint written (signals, limits, a STOP file). Checkpoints are removed once the pack is
 /// written. A pack that misses a target is written all the same: see RunRecord::missed. A bed whose energy grows from
-/// layer to layer is a numerical_failure.
-[[nodiscard]] report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options);
+/// layer to layer is a numerical_failure. `guest`: who else follows the bed; it ends nothing but by an Error of all
+/// ranks.
+[[nodiscard]] report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options,
+                                          Attendant* guest = nullptr);
+
+/// Collective. The same pack, to the bit, in memory: no file, no checkpoint, and nobody listens but `guest`, who is
+/// shown the bed at its end (Attendant::measured). Throws bad_input and numerical_failure, as make_pack().
+[[nodiscard]] report::RunRecord make_in_memory(const comm::Comm& comm, const scene::Scene& scene, Attendant& guest);
 
 }  // namespace packmpi::run

@@ -15,7 +15,8 @@ set(libraries
   "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"
   "voro[+][+]/.*=observe"
   "boost/.*=report"
-  "nlohmann/.*=base report pack run cli")
+  "nlohmann/.*=base report pack run library cli"
+  "pybind11/.*=python")
 
 function(report where text)
   set_property(GLOBAL APPEND PROPERTY found "${where}: ${text}")

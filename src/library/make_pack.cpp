@@ -1,4 +1,6 @@
-// The public face of the program: include/packmpi/make_pack.hpp.
+// The whole program as one call: include/packmpi/make_pack.hpp.
+#include "packmpi/make_pack.hpp"
+
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -6,7 +8,6 @@
 #include "base/voids.hpp"
 #include "comm/petsc.hpp"
 #include "comm/session.hpp"
-#include "packmpi/make_pack.hpp"
 #include "run/make_pack.hpp"
 #include "run/start.hpp"
 

@@ -1,4 +1,6 @@
 // The library's own face: what make_pack() gives back, with a pack and without.
+#include "packmpi/make_pack.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -6,7 +8,6 @@
 #include <fstream>
 
 #include "comm/comm.hpp"
-#include "packmpi/make_pack.hpp"
 
 namespace packmpi {
 namespace {

@@ -1,0 +1,17 @@
+/// What a user should know of a scene before it runs.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/expectation.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::library {
+
+/// Sentences on what is allowed and yet likely a mistake: step, softness, fines. Local, pure.
+[[nodiscard]] std::vector<std::string> warnings_of(const scene::Scene& scene);
+
+/// "the finest 5 % by mass, below 1e-4 m, are 97 % of about 2e+06 particles". Local.
+[[nodiscard]] std::string fines_words(const scene::Fines& fines);
+
+}  // namespace packmpi::library
