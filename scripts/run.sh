@@ -14,6 +14,7 @@ else
   say "building $program, once: three to four minutes on two cores"
 fi
 "$here/build.sh"
+"$here/python_path.sh"
 say "ready after $((SECONDS - start)) s; packmpi on ${NP:-$(nproc)} ranks"
 source "$here/mpi_env.sh"
 exec mpirun -n "${NP:-$(nproc)}" "$program" "$@"

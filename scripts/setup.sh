@@ -14,7 +14,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libeigen3-dev
   libhdf5-openmpi-dev libmetis-dev voro++-dev libboost-dev libgtest-dev libgmock-dev libtomlplusplus-dev libcli11-dev libfmt-dev
-  libspdlog-dev librandom123-dev nlohmann-json3-dev)
+  libspdlog-dev librandom123-dev nlohmann-json3-dev pybind11-dev python3 python3-dev python3-numpy python3-h5py)
 for option in "$@"; do
   case $option in
     --plots) packages+=(python3 python3-h5py python3-matplotlib python3-jsonschema) ;;

@@ -1,5 +1,5 @@
 # The Python package of render, plot and report (scripts/python/packmpi). Installed where Python 3 of this machine looks below a
-# prefix as /usr/local, so that "import packmpi" finds it; for the program in the build folder a link stands beside it.
+# prefix as /usr/local, so that "import packmpi" finds it; in the build folder it stands beside the program, as links to its sources, with its compiled part.
 find_program(PACKMPI_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 set(place share/packmpi/python)
 if(PACKMPI_PYTHON)
@@ -12,4 +12,14 @@ print('lib/python%d.%d/' % sys.version_info[:2] + sysconfig.get_path('purelib').
 endif()
 set(PACKMPI_PYTHON_DIR ${place} CACHE STRING "folder of the installed Python package, below the prefix")
 file(RELATIVE_PATH PACKMPI_PYTHON_FROM_PROGRAM /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${PACKMPI_PYTHON_DIR})
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/scripts/python ${PROJECT_BINARY_DIR}/python SYMBOLIC)
+if(IS_SYMLINK ${PROJECT_BINARY_DIR}/python)   # as it was before there was a compiled part
+  file(REMOVE ${PROJECT_BINARY_DIR}/python)
+endif()
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/python/packmpi)
+file(GLOB package CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/python/packmpi/*)
+foreach(file IN LISTS package)
+  get_filename_component(name ${file} NAME)
+  if(NOT name STREQUAL "__pycache__")
+    file(CREATE_LINK ${file} ${PROJECT_BINARY_DIR}/python/packmpi/${name} SYMBOLIC)
+  endif()
+endforeach()

@@ -108,7 +108,7 @@ def environment(folder):
     """That of a fresh login, with the programs of this build and those that it needs in PATH."""
     build = (folder / "build").resolve()
     places = [str(build)] + [str(pathlib.Path(where).parent) for where in map(shutil.which, ("mpirun", "cmake", "lmp")) if where]
-    return {**{name: os.environ[name] for name in KEPT if name in os.environ}, "BUILD": str(build),
+    return {**{name: os.environ[name] for name in KEPT if name in os.environ}, "BUILD": str(build), "PYTHONUSERBASE": str(folder / "python_user"),
             "PATH": ":".join(dict.fromkeys([*places, "/usr/bin", "/bin"]))}
 
 

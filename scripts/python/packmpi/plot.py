@@ -20,7 +20,7 @@ from matplotlib.figure import Figure  # noqa: E402
 
 from . import sizes as size_curves  # noqa: E402
 from .problem import Problem  # noqa: E402
-from .read import Floats, Pack  # noqa: E402
+from .pack import Floats, Pack  # noqa: E402
 from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
 

@@ -24,7 +24,7 @@ from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E4
 from matplotlib.figure import Figure  # noqa: E402
 
 from .problem import Problem  # noqa: E402
-from .read import Floats, Pack  # noqa: E402
+from .pack import Floats, Pack  # noqa: E402
 from .style import BACKGROUND, INK, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
 

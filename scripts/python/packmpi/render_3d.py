@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vtk.util import numpy_support as convert
 
 from .problem import Problem
-from .read import Floats, Pack
+from .pack import Floats, Pack
 from .style import BACKGROUND, INK, TARGET
 
 Point = tuple[float, float, float]

@@ -10,13 +10,13 @@ import base64
 import html
 import tempfile
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Sequence, Union
 
 import numpy as np
 
 from . import plot
 from .problem import Problem
-from .read import Pack
+from .pack import Pack
 from .render import container_size, pictures_of
 from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
 from .units import length_unit
@@ -324,6 +324,16 @@ def page(pack: Pack, analysis: dict[str, Any], pixels: int) -> str:
 """
 
 
+def write_page(pack: Pack, path: Path, *, program: Union[str, None] = None, pixels: int = 700) -> int:
+    """Writes the page on a pack that has a file; its length. Raises Problem."""
+    text = page(pack, pack.analysis(program), pixels)
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise Problem(f"cannot write {path}: {error}") from error
+    return len(text)
+
+
 def main(words: list[str]) -> None:
     """packmpi report WORDS."""
     parser = argparse.ArgumentParser(prog="packmpi report", description="Write one page, HTML, on a pack (NAME.hdf).")
@@ -336,9 +346,5 @@ def main(words: list[str]) -> None:
     if pack.count == 0:
         raise Problem(f"{options.pack} has no particles")
     path: Path = options.output or pack.path.with_suffix(".html")
-    text = page(pack, pack.analysis(options.program), options.size)
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Problem(f"cannot write {path}: {error}") from error
-    print(f"{path}: {pack.count} particles, {len(text) / 1024:.0f} kB")
+    written = write_page(pack, path, program=options.program, pixels=options.size)
+    print(f"{path}: {pack.count} particles, {written / 1024:.0f} kB")

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from .read import Floats
+from .pack import Floats
 
 POINTS = 2001   # of a smooth curve
 

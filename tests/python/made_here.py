@@ -1,0 +1,198 @@
+"""In plain Python, in the folder where the program has made bed.hdf of bed.toml: arrays, errors, files, ensembles, time."""
+import gc
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import tomllib
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import packmpi
+from packmpi import toml
+
+TEXT = Path("bed.toml").read_text()
+KEYS = tomllib.loads(TEXT)
+# Twenty lines, counted by the test: import to arrays of ten thousand spheres.
+SHORT = """
+import packmpi
+pack = packmpi.run({
+    "fidelity": "draft",
+    "container": {"size": [1.2, 1.2, 0.3], "boundary": ["periodic", "periodic"]},
+    "particles": {"density": 2650.0, "youngs_modulus": "30 MPa", "poisson_ratio": 0.25,
+                  "radius": {"distribution": "grading", "weighting": "mass",
+                             "diameter_curve": [["30 mm", 0], ["38 mm", 60], ["45 mm", 100]]}},
+    "layers": {"thickness": 0.2, "fraction": 0.25},
+    "jamming": {"gravity": 9.81},
+    "contact": {"friction": 0.3, "damping_ratio": 0.3}})
+position, radius, force = pack.position, pack.radius, pack.forces
+"""
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.pack = packmpi.run("bed.toml")
+
+    def test_are_those_of_the_program(self):
+        made = packmpi.read("bed.hdf")
+        for name in ("id", "position", "radius", "velocity", "spin", "layer", "contacts", "pairs", "forces"):
+            np.testing.assert_array_equal(getattr(self.pack, name), getattr(made, name), name)
+        self.assertEqual(sorted(self.pack.pair_contacts), sorted(made.pair_contacts))
+        self.assertEqual({k: v for k, v in made.summary.items() if k != "units"}, self.pack.summary)
+        self.assertEqual(made.rest, self.pack.rest)
+        self.assertEqual(made.layers, self.pack.layers)
+
+    def test_are_not_copied(self):
+        made, position = self.pack._made, self.pack.position
+        self.assertEqual(position.ctypes.data, made.address)            # the memory of C++ itself
+        self.assertEqual(position.ctypes.data, made.position.ctypes.data)
+        self.assertFalse(position.flags.owndata)
+        self.assertFalse(position.flags.writeable)
+        self.assertIs(position.base, made)
+        self.assertTrue(position.flags.c_contiguous)
+        self.assertEqual((position.dtype, self.pack.id.dtype), (np.float64, np.int64))
+
+    def test_live_as_long_as_they_are_used(self):
+        position = packmpi.run("bed.toml").position   # the pack is gone
+        gc.collect()
+        np.testing.assert_array_equal(position, self.pack.position)
+
+    def test_of_discs(self):
+        pack = packmpi.run({**KEYS, "container": {"dimension": 2, "size": [0.4, 0.2]}, "contact": {"friction": 0.0},
+                            "dynamics": {"rotation": False}})
+        self.assertEqual((pack.dimension, pack.noun, pack.spin), (2, "discs", None))
+        self.assertTrue(np.all(pack.position[:, 2] == 0.0))
+        self.assertNotIn("tangential_displacement", pack.pair_contacts)
+
+
+class Scenes(unittest.TestCase):
+    def test_dictionary_text_and_file_are_one(self):
+        file = packmpi.scene("bed.toml")
+        self.assertEqual(packmpi.scene(TEXT).text, file.text)
+        self.assertEqual(packmpi.scene(KEYS).text, file.text)
+        self.assertEqual(packmpi.scene(Path("bed.toml")).name, "bed")
+        self.assertEqual(packmpi.scene(KEYS, name="other").name, "other")
+        self.assertEqual(packmpi.scene(file.text).keys(), file.keys())
+
+    def test_changes(self):
+        scene = packmpi.scene("bed.toml", set={"layers.duration": 0.5, "container.boundary": ["periodic", "wall"]}, seed=9)
+        self.assertEqual((scene.keys()["layers"]["duration"], scene.keys()["seed"]), (0.5, 9))
+
+    def test_toml_is_read_as_it_was(self):
+        odd = {"a": 1, "b": [1.5, -0.0, 1e-300], "c": 'a "b" \\ \n\tü\x01', "t": {"k": True, "in": {"x y": [["3 mm", 0]]}}}
+        self.assertEqual(tomllib.loads(toml.dumps(odd)), odd)
+        numbers = {"n": np.int32(3), "x": np.float32(0.5), "v": np.arange(3.0)}
+        self.assertEqual(tomllib.loads(toml.dumps(numbers)), {"n": 3, "x": 0.5, "v": [0.0, 1.0, 2.0]})
+
+    def test_errors_have_key_and_line(self):
+        cases = [(TEXT.replace("size =", "siez ="), "container.siez", 3), (TEXT + "[jammin]\n", "jammin", 21), ("a = = 1\n", "", 1),
+                 (TEXT.replace("0.15", "0.9"), "layers.fraction", 11)]
+        for text, key, line in cases:
+            with self.subTest(key=key), self.assertRaises(packmpi.SceneError) as raised:
+                packmpi.scene(text, name="mine")
+            error = raised.exception
+            self.assertEqual((error.key, error.line, error.file, error.code), (key, line, "mine.toml", 2), str(error))
+        with self.assertRaises(packmpi.SceneError) as raised:
+            packmpi.scene("bed.toml", set={"layers.fraction": 0.9})
+        self.assertEqual((raised.exception.key, raised.exception.line), ("layers.fraction", 0))
+        with self.assertRaises(packmpi.SceneError) as raised:
+            packmpi.scene({"container": {"size": object()}})
+        self.assertEqual(raised.exception.key, "container.size")
+        for wrong in ("none.toml", "."):
+            with self.assertRaises(packmpi.Problem):
+                packmpi.scene(wrong)
+        with self.assertRaises(ValueError):   # a SceneError is one
+            packmpi.scene("a = 1\n")
+
+    def test_check_and_estimate(self):
+        facts = packmpi.scene("bed.toml").check()
+        self.assertLess(0.0, facts["time_step"])
+        self.assertLessEqual(facts["time_step"], facts["time_step_limit"])
+        self.assertGreater(facts["most_ranks"], 1)
+        self.assertEqual(facts["warnings"], [])
+        soft = packmpi.scene("bed.toml", set={"particles.youngs_modulus": 1e4}).check()
+        self.assertIn("particles.youngs_modulus", soft["warnings"][0])
+        told = packmpi.scene("bed.toml").estimate(particles=1000, ranks=2, probe=False)
+        self.assertEqual((told["found"], told["ranks"]), ("height", 2))
+        self.assertLess(abs(told["particles"]["value"] - 1000), 200)
+
+
+class Files(unittest.TestCase):
+    def test_in_memory_nothing_is_left(self):
+        before = set(Path(".").iterdir())
+        pack = packmpi.run("bed.toml")
+        self.assertIn("contacts", pack.analyze())
+        files = pack.convert("lammps", "here.lammps.data", force=True)
+        self.assertTrue(all(file.exists() for file in files))
+        del pack
+        gc.collect()
+        left = {path.name for path in set(Path(".").iterdir()) - before} - {file.name for file in files}
+        self.assertEqual(left, set())
+
+    def test_wishes_that_cannot_be(self):
+        pack = packmpi.run("bed.toml")
+        for wish in (lambda: pack.convert("lammps"), pack.report, lambda: pack.convert("no_format", "x"),
+                     lambda: packmpi.read("none.hdf"), lambda: packmpi.read("bed.toml"), lambda: packmpi.run("bed.toml", comm=3),
+                     lambda: packmpi.ensemble("bed.toml", "x"), lambda: pack.save("no_such/folder/x.hdf"),
+                     lambda: packmpi.run("bed.toml", folder="x", restart="none.hdf")):
+            with self.assertRaises(packmpi.Problem):
+                wish()
+
+    def test_ensemble(self):
+        scene = packmpi.scene("bed.toml", set={"ensemble.packs": 2, "container.size": [0.2, 0.2, 0.05]})
+        with self.assertRaises(packmpi.SceneError) as raised:
+            packmpi.run(scene)
+        self.assertIn("ensemble", str(raised.exception))
+        both = packmpi.ensemble(scene, "both", force=True)
+        self.assertEqual(len(both), 2)
+        self.assertEqual([pack.provenance["seed"] for pack in both], [3, 4])
+
+    def test_checkpoint_and_on(self):
+        with self.assertRaises(packmpi.Problem) as raised:
+            packmpi.run("bed.toml", folder="cut", max_hours=1e-9, force=True)
+        self.assertEqual(raised.exception.code, 75)
+        pack = packmpi.run("bed.toml", folder="cut", restart="auto")
+        np.testing.assert_array_equal(pack.position, packmpi.read("bed.hdf").position)
+
+
+class Manners(unittest.TestCase):
+    def test_progress(self):
+        told = []
+        packmpi.run("bed.toml", progress=told.append)
+        self.assertEqual(told[0].stage, "inserting")
+        self.assertTrue(all(0.0 <= now.share <= 1.0 for now in told))
+        self.assertGreater(told[-1].height, 0.0)
+
+    def test_control_c(self):
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begun = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            packmpi.run("bed.toml", progress=lambda now: time.sleep(0.02), )
+            time.sleep(5.0)
+        self.assertLess(time.monotonic() - begun, 4.0)
+
+    def test_import_starts_no_mpi(self):
+        words = "import packmpi, sys; packmpi.Pack; sys.exit('packmpi._core' in sys.modules)"
+        self.assertEqual(subprocess.run([sys.executable, "-c", words], check=False).returncode, 0)
+
+    def test_many_in_few_lines_and_seconds(self):
+        lines = [line for line in SHORT.splitlines() if line.strip()]
+        self.assertLess(len(lines), 20)
+        check = textwrap.dedent("""
+            import resource
+            assert position.shape == (len(radius), 3) and len(radius) > 10_000 and force.shape[1] == 3, len(radius)
+            assert 0.55 < pack.phi_bulk < 0.66, pack.phi_bulk
+            print(len(radius), "spheres:", resource.getrusage(resource.RUSAGE_SELF).ru_utime, "s of this process")
+            assert resource.getrusage(resource.RUSAGE_SELF).ru_utime < 10.0
+            """)
+        self.assertEqual(subprocess.run([sys.executable, "-c", SHORT + check], check=False).returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
