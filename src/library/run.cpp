@@ -65,7 +65,7 @@ class Guest final : public run::Attendant {
   std::shared_ptr<const Packing::Rows> rows_;
 };
 
-run::Options options_of(const Scene& scene, const RunOptions& options) {
+run::Options run_options_of(const Scene& scene, const RunOptions& options) {
   run::Options out;
   out.scene = scene.file();
   out.folder = options.folder.empty() ? "." : options.folder;
@@ -76,16 +76,16 @@ run::Options options_of(const Scene& scene, const RunOptions& options) {
   return out;
 }
 
-void refuse_ensemble(const Scene& scene) {
+void refuse_several(const Scene& scene) {
   if (scene.packs() == 1) return;
   throw Error(ExitCode::bad_input,
               fmt::format("{}: ensemble: {} packs, and make_packing() makes one; call make_ensemble()", scene.file(),
                           scene.packs()));
 }
 
-void make(const comm::Comm& comm, const Scene& what, const RunOptions& options, Guest& guest) {
+void make_here(const comm::Comm& comm, const Scene& what, const RunOptions& options, Guest& guest) {
   const input::Input in = run::with_start(comm, what.input());
-  refuse_ensemble(what);
+  refuse_several(what);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);
   expect_memory(forecast::memory_a_rank(scene, comm.size()));
@@ -93,7 +93,7 @@ void make(const comm::Comm& comm, const Scene& what, const RunOptions& options, 
   if (options.folder.empty()) {
     (void)run::make_in_memory(comm, scene, guest);
   } else {
-    (void)run::make_pack(comm, scene, options_of(what, options), &guest);
+    (void)run::make_pack(comm, scene, run_options_of(what, options), &guest);
   }
 }
 
@@ -102,7 +102,7 @@ void make(const comm::Comm& comm, const Scene& what, const RunOptions& options, 
 Packing make_packing(const Scene& scene, MPI_Comm world, const RunOptions& options) {
   const comm::Comm comm(world);
   Guest guest(comm, options.progress);
-  const comm::Failure failure = comm::end_together(comm, [&] { make(comm, scene, options, guest); });
+  const comm::Failure failure = comm::end_together(comm, [&] { make_here(comm, scene, options, guest); });
   log::finish();
   if (guest.thrown()) std::rethrow_exception(guest.thrown());
   if (failure.code != ExitCode::done) throw library::failure_of(failure, scene.file());
@@ -116,7 +116,7 @@ int make_ensemble(const Scene& scene, MPI_Comm world, const RunOptions& options)
     const input::Input in = run::with_start(comm, scene.input());
     comm::petsc_options(in.petsc.options);
     log::start(comm.rank(), std::nullopt, log::Verbosity::quiet);
-    code = ensemble::make_ensemble(comm, in, options_of(scene, options));
+    code = ensemble::make_ensemble(comm, in, run_options_of(scene, options));
   });
   log::finish();
   if (failure.code != ExitCode::done) throw library::failure_of(failure, scene.file());
