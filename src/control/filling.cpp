@@ -34,6 +34,29 @@ std::vector<double> falling(const std::vector<double>& values) {
   return out;
 }
 
+// Trials, ascending in their knob, with those that are nearly alike made one: they differ by chance more than by their
+// knobs, and the slope between them would be chance alone. The ends stay as they are.
+std::vector<Trial> distinct(const std::vector<Trial>& trials) {
+  constexpr double alike = 0.06;
+  std::vector<Trial> out;
+  double first = 0.0, count = 0.0;  // of the last of `out`
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const Trial& trial = trials[k];
+    if (out.size() > 1 && k + 1 < trials.size() && trial.knob - first < alike) {
+      Trial& mean = out.back();
+      mean.knob += (trial.knob - mean.knob) / (count + 1.0);
+      mean.filled += (trial.filled - mean.filled) / (count + 1.0);
+      mean.relaxed += (trial.relaxed - mean.relaxed) / (count + 1.0);
+      count += 1.0;
+      continue;
+    }
+    out.push_back(trial);
+    first = trial.knob;
+    count = 1.0;
+  }
+  return out;
+}
+
 // y at x, of points ascending in x; constant beyond them.
 double between(const std::vector<double>& x, const std::vector<double>& y, double at) {
   if (at <= x.front()) return y.front();
@@ -83,7 +106,7 @@ double fraction_wanted(const input::Target& target, const Limits& limits) {
 Filling curve_of(std::vector<Trial> trials) {
   std::ranges::sort(trials, {}, &Trial::knob);
   Filling curve;
-  for (const Trial& trial : trials) {
+  for (const Trial& trial : distinct(trials)) {
     curve.knobs.push_back(trial.knob);
     curve.filled.push_back(trial.filled);
     curve.relaxed.push_back(trial.relaxed);

@@ -54,8 +54,9 @@ struct Slab {
 /// The solid fraction that a target of [target] stands for; `limits` are asked for only by relative_density. Local.
 [[nodiscard]] double fraction_wanted(const input::Target& target, const Limits& limits);
 
-/// The curve of trials, which come in any order: made to fall where chance lets it rise (isotonic regression), so that
-/// every density has a knob. Without target and knob. Local.
+/// The curve of trials, which come in any order: those of nearly the same knob count as one, their mean, and it is made
+/// to fall where chance lets it rise (isotonic regression), so that every density has a knob, and none hangs on the
+/// chance of two trials side by side. Without target and knob. Local.
 [[nodiscard]] Filling curve_of(std::vector<Trial> trials);
 [[nodiscard]] Limits limits_of(const Filling& curve);
 /// The knob at which the curve of the relaxed sample is `fraction`, linear between trials; the nearest end's beyond.

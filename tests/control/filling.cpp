@@ -87,6 +87,21 @@ TEST(Filling, WhatRisesByChanceIsLevelled) {
   EXPECT_EQ(curve.relaxed[2], 0.58);
 }
 
+// Two trials side by side, 0.004 apart by chance: their slope is not believed.
+TEST(Filling, TrialsSideBySideAreOne) {
+  std::vector<Trial> more = trials;
+  more.push_back({0.60, 0.6190, 0.6195, 5.6});
+  more.push_back({0.61, 0.6150, 0.6155, 5.6});
+  const Filling curve = curve_of(more);
+  ASSERT_EQ(curve.knobs.size(), 6U);
+  EXPECT_NEAR(curve.knobs[3], 0.605, 1e-15);
+  EXPECT_NEAR(curve.relaxed[3], 0.6175, 1e-15);
+  EXPECT_NEAR(curve.filled[3], 0.6170, 1e-15);
+  more.push_back({0.02, 0.6390, 0.6390, 6.0});  // beside an end, which stays
+  EXPECT_EQ(curve_of(more).knobs.front(), 0.0);
+  EXPECT_EQ(curve_of(more).relaxed.front(), 0.640);
+}
+
 /// A bed whose layers have `more` than the curve foresees; what its bulk comes to.
 double filled_in(double more, double target) {
   constexpr double d = 1.0, rise = 2.0;
