@@ -49,6 +49,7 @@ Json schema_of(const Key& key) {
   sample.near_field.emplace();
   sample.start.emplace();
   sample.target.emplace();
+  sample.confinement.emplace();
   Json schema = std::visit(
       [&](const auto* slot) -> Json {
         using Value = std::remove_cvref_t<decltype(*slot)>;

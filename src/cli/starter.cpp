@@ -76,7 +76,7 @@ std::string starter(int dimension) {
     const std::string_view table = split_path(key.path).first;
     if (table != open) {  // a table that is there only if it is named stays away
       const bool absent = (!in.near_field && table == "near_field") || (!in.start && table == "start") ||
-                          (!in.target && table == "target");
+                          (!in.target && table == "target") || (!in.confinement && table == "confinement");
       text += fmt::format("\n{}[{}]\n", absent ? "# " : "", table);
     }
     open = table;

@@ -82,12 +82,14 @@ ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const part
   const double r = store.radius(i);
   const double distance = plane.distance(store.position(i));
   const double k = store.record(i)[store.layout().curvature];
-  const Vector v = vector_of(store.velocity(i)), w = vector_of(store.spin(i));
+  Vec3 v = store.velocity(i);
+  for (std::size_t a = 0; a < 3; ++a) v[a] = (static_cast<int>(a) == plane.axis ? plane.speed : -0.0) - v[a];
+  const Vector w = vector_of(store.spin(i));
   const Meeting at{plain::reduced_of_wall(law.mass_factor, k, r),
                    vector_of(plane.normal()),
                    0.0,
                    distance < r ? r - distance : 0.0,
-                   scaled(-1.0, v),
+                   vector_of(v),
                    scaled(r, w),
                    scaled(-1.0, w),
                    {}};

@@ -91,8 +91,8 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
       touching.emplace_back(-overlap, fmt::format("{}", now.store.ids()[static_cast<std::size_t>(other)]));
     }
   }
-  constexpr std::array<const char*, 5> names{"the floor", "the wall x = 0", "the wall x = L", "the wall y = 0",
-                                             "the wall y = B"};
+  constexpr std::array<const char*, geometry::most_surfaces> names{"the floor",      "the wall x = 0", "the wall x = L",
+                                                                   "the wall y = 0", "the wall y = B", "the lid"};
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const double depth = walls.particle[w] == i ? penetration_of(now, i, walls.wall[w]) : 0.0;

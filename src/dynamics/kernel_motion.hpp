@@ -4,7 +4,8 @@
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
-/// Fill entry p of the block for one particle at one wall: the wall is a second end at rest, all its fields zero.
+/// Fill entry p of the block for one particle at one wall: the wall is a second end whose fields are zero, but for its
+/// speed along its axis.
 template <Features F>
 PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalIndex particle, neighbor::Wall wall) {
   using M = Memory<F>;
@@ -17,6 +18,7 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalInde
     if (M::reads(a) > 1) b.again[a][p] = M::sign(a, true) != 0 ? -record[a] : record[a];
   }
   for (int a = 0; a < F.dimension; ++a) b.in[a][p] = a == plane.axis ? plane.sign : 0.0;
+  b.in[layout.velocity + plane.axis][p] = plane.speed - record[layout.velocity + plane.axis];
   b.distance[p] = plane.offset - plane.sign * record[plane.axis];
 }
 

@@ -2,20 +2,22 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "base/types.hpp"
 
 namespace packmpi::geometry {
 
-/// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only).
-enum class Surface : std::int32_t { floor = 0, x_low = 1, x_high = 2, y_low = 3, y_high = 4 };
-inline constexpr std::size_t most_surfaces = 5;
+/// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only); 5 the lid.
+enum class Surface : std::int32_t { floor = 0, x_low = 1, x_high = 2, y_low = 3, y_high = 4, lid = 5 };
+inline constexpr std::size_t most_surfaces = 6;
 
 /// A flat wall across one axis: distance of a point = offset - sign * x[axis], normal = sign along the axis, towards
 /// the wall.
 struct Plane {
   int axis;
   double sign, offset;
+  double speed = -0.0;  ///< [m/s] of the wall along the axis; at rest -0, so that speed - v is -v to the bit
 
   [[nodiscard]] constexpr double distance(const Vec3& x) const {
     return offset - sign * x[static_cast<std::size_t>(axis)];
@@ -28,11 +30,14 @@ struct Plane {
 };
 
 /// A rectangle (2D: x lateral, y vertical) or prism (3D: x, y lateral, z vertical), lower corner at the origin, open at
-/// the top. Lateral axes end in walls or are periodic. The first shape; others will answer the same questions.
+/// the top or under a lid. Lateral axes end in walls or are periodic. The first shape; others will answer the same
+/// questions.
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
   std::array<bool, 2> periodic{};  ///< per lateral axis
+  std::optional<double> lid;       ///< [m] height of a rigid lid; none: open at the top
+  Vec3 speed{-0.0, -0.0, -0.0};    ///< [m/s] of walls that move: the high one of each lateral axis, and the lid
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }
@@ -46,6 +51,7 @@ struct Container {
   /// Has this container this wall? Periodic axes have none.
   [[nodiscard]] constexpr bool has(Surface surface) const {
     const auto number = static_cast<std::size_t>(surface);
+    if (surface == Surface::lid) return lid.has_value();
     const std::size_t axis = (number - 1) / 2;
     return number == 0 || (axis < static_cast<std::size_t>(lateral_axes()) && !periodic[axis]);
   }
@@ -53,9 +59,13 @@ struct Container {
   [[nodiscard]] constexpr Plane plane(Surface surface) const {
     const int number = static_cast<int>(surface);
     if (number == 0) return {vertical(), -1.0, 0.0};
+    if (surface == Surface::lid) {
+      return {vertical(), 1.0, lid.value_or(0.0), speed[static_cast<std::size_t>(vertical())]};
+    }
     const int axis = (number - 1) / 2;
-    const bool high = number % 2 == 0;
-    return {axis, high ? 1.0 : -1.0, high ? size[static_cast<std::size_t>(axis)] : 0.0};
+    const auto a = static_cast<std::size_t>(axis);
+    if (number % 2 == 0) return {axis, 1.0, size[a], speed[a]};
+    return {axis, -1.0, 0.0};
   }
   /// Calls found(surface, distance [m]) for each wall nearer to `x` than `range` [m], in the order of their numbers.
   template <class Found>
@@ -71,6 +81,10 @@ struct Container {
     double most = -plane(Surface::floor).distance(x);
     for (std::size_t number = 1; number <= 2 * static_cast<std::size_t>(lateral_axes()); ++number) {
       const double here = -plane(static_cast<Surface>(number)).distance(x);
+      if (here > most || here != here) most = here;
+    }
+    if (lid) {
+      const double here = -plane(Surface::lid).distance(x);
       if (here > most || here != here) most = here;
     }
     return most;

@@ -360,6 +360,31 @@ void check_target(const Case& scene) {
   }
 }
 
+void check_confinement(const Case& scene) {
+  const Input& in = scene.in;
+  if (!in.confinement) return;
+  const Confinement& asked = *in.confinement;
+  if (asked.isotropic.has_value() == asked.vertical.has_value()) {
+    scene.refuse("confinement", asked.isotropic ? "has isotropic and vertical; give one of them"
+                                                : "gives no stress; give vertical, vertical and lateral, or isotropic");
+  }
+  if (asked.isotropic && asked.lateral) {
+    scene.refuse("confinement.lateral", "isotropic says what it is; remove it, or give vertical and lateral");
+  }
+  if (insertion_alone(in)) {
+    scene.refuse("confinement", "layers.duration = 0 is insertion alone: no particle touches another; remove one");
+  }
+  if (in.dynamics.theta > 0.0) {
+    scene.refuse("confinement", "a lid wants explicit steps; use dynamics.theta = 0, or remove it");
+  }
+  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  if (rough && in.contact.tangential == Tangential::sliding) {
+    scene.refuse("contact.tangential",
+                 "\"sliding\" friction has no memory: under stress a pack creeps for ever; use \"mindlin\" with "
+                 "[confinement] (fidelity = \"paper\" sets \"sliding\" unless the scene says so)");
+  }
+}
+
 void check_checkpoint(const Case& scene) {
   const std::string& every = scene.in.checkpoint.every;
   if (rhythm_of(every)) return;
@@ -391,6 +416,7 @@ void check(const Input& in, const Document& document) {
   check_memory(scene);
   check_theta(scene);
   check_target(scene);
+  check_confinement(scene);
   check_checkpoint(scene);
   check_petsc(scene);
 }

@@ -147,6 +147,17 @@ struct Target {
   double most_rolling_friction = 0.0;      ///< [-] likewise
 };
 
+/// The stress [Pa] that the finished pack is brought to, compression positive. `isotropic`, or `vertical` with or
+/// without `lateral`; without, lateral strain is zero.
+struct Confinement {
+  std::optional<double> vertical, lateral, isotropic;
+  double tolerance = 0.0;      ///< [-] of the stress asked for
+  std::optional<double> wait;  ///< [s] at most until it is there; none: "auto"
+
+  [[nodiscard]] double on_lid() const { return isotropic ? *isotropic : vertical.value_or(0.0); }
+  [[nodiscard]] std::optional<double> on_sides() const { return isotropic ? isotropic : lateral; }
+};
+
 struct Parallel {
   Decomposition decomposition = Decomposition::slab;
 };
@@ -186,7 +197,8 @@ struct Input {
   Dynamics dynamics;
   std::optional<Start> start;  ///< none: from nothing
   Rest rest;
-  std::optional<Target> target;  ///< none: the density that comes
+  std::optional<Target> target;            ///< none: the density that comes
+  std::optional<Confinement> confinement;  ///< none: the pack has a free surface
   Parallel parallel;
   Ensemble ensemble;
   Checkpoint checkpoint;

@@ -18,6 +18,7 @@ Slot sample(const Key& key) {
     in.near_field.emplace();
     in.start.emplace();
     in.target.emplace();
+    in.confinement.emplace();
     return in;
   }();
   return key.slot(any);

@@ -118,6 +118,7 @@ constexpr Condition settled{"stop = \"settled\"",
 constexpr Condition near_field{"[near_field] is present", [](const Input& in) { return in.near_field.has_value(); }};
 
 constexpr Condition targeted{"[target] is present", [](const Input& in) { return in.target.has_value(); }};
+constexpr Condition confined{"[confinement] is present", [](const Input& in) { return in.confinement.has_value(); }};
 
 // clang-format off
 std::vector<Key> general_keys() {
@@ -364,6 +365,21 @@ std::vector<Key> target_keys() {
   };
 }
 
+std::vector<Key> confinement_keys() {
+  const auto at = [](auto member) -> Place { return [=](Input& in) -> Slot { return &((*in.confinement).*member); }; };
+  return {
+    when(confined, real("confinement.vertical", at(&Confinement::vertical), pressure, above(0), "auto",
+         "Vertical stress, compression positive, that a rigid lid brings the finished pack to. Without lateral the sides stay where they are: the K0 state. Either this or isotropic is given.")),
+    when(confined, real("confinement.lateral", at(&Confinement::lateral), pressure, above(0), "auto",
+         "Lateral stress: walls, or the periods of periodic axes, move until it is there. Only with vertical.")),
+    when(confined, real("confinement.isotropic", at(&Confinement::isotropic), pressure, above(0), "auto", "The same stress on all sides.")),
+    when(confined, real("confinement.tolerance", at(&Confinement::tolerance), ratio, Range{0, 0.5, true, false}, "0.01",
+         "What the stress on the boundary, and that of the contacts, may differ by, over the stress asked for.")),
+    when(confined, real("confinement.wait", at(&Confinement::wait), time, above(0), "auto",
+         "Simulated time at most until the stress is there and the pack at rest; \"auto\": what waves need to cross the pack 1000 times.")),
+  };
+}
+
 std::vector<Key> program_keys() {
   return {
     word("parallel.decomposition", at(&Input::parallel, &Parallel::decomposition), "slab",
@@ -386,9 +402,9 @@ std::vector<Key> program_keys() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all;
-    for (const auto& part :
-         {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(), force_keys(),
-          near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), target_keys(), program_keys()}) {
+    for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(),
+                             force_keys(), near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), target_keys(),
+                             confinement_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

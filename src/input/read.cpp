@@ -246,6 +246,7 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   if (document.find("start") != nullptr) in.start.emplace();
   if (document.find("target") != nullptr) in.target.emplace();
+  if (document.find("confinement") != nullptr) in.confinement.emplace();
   for (const Key& key : keys()) read_key(key, document, in);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
   take_curve(document, curve, in);

@@ -32,15 +32,14 @@ double chatter(const Contact& contact) {
   return stops && friction > smooth ? std::sqrt(std::sqrt(friction / smooth)) : 1.0;
 }
 
-// The step [s] at which contacts under the weight of the bed would begin to chatter. Friction with memory holds a
+// The step [s] at which contacts under a stress [Pa] would begin to chatter. Friction with memory holds a
 // particle by springs on all sides: one of eight loaded contacts that spins against its neighbours has omega^2 = 2 x 8
 // x 2/3 k_t / (2/5 m); without spin it swings with 16 (k_n + 2 k_t) / 3 m. The scheme is stable for omega dt < 2
-// (sqrt(zeta^2 + 1) - zeta). k_t is that of twice the mean overlap on the floor.
-double holding_step(const Input& in, double radius, double youngs_modulus) {
+// (sqrt(zeta^2 + 1) - zeta). k_t is that of twice the mean overlap.
+double holding_step(const Input& in, double radius, double youngs_modulus, double stress) {
   constexpr double contacts = 5.0, loaded = 1.8;  // twice the mean, of forces as uneven as in packs (0.9)
   const Particles& of = in.particles;
   const double modulus = pair_modulus(of, youngs_modulus), nu = of.poisson_ratio;
-  const double stress = of.density * in.jamming.gravity * in.container.size.back();
   if (!(stress > 0.0)) return std::numeric_limits<double>::infinity();
   const double squeezed = 3.0 * std::numbers::sqrt2 * std::numbers::pi * stress / (modulus * contacts);
   const double overlap = loaded * elementary::power(squeezed, 2.0 / 3.0) * radius;
@@ -81,7 +80,12 @@ double automatic_step(const Input& in, const RadiusRange& radii, double youngs_m
   const double safe = safe_step(in, radii, youngs_modulus);
   if (in.dynamics.theta != 0.0) return safe;
   if (in.contact.tangential != Tangential::mindlin) return safe / chatter(in.contact);
-  return std::fmin(safe, holding_step(in, radii.smallest, youngs_modulus) / press(radii));
+  const double weight = in.particles.density * in.jamming.gravity * in.container.size.back();
+  return std::fmin(safe, step_under(in, radii, youngs_modulus, weight));
+}
+
+double step_under(const Input& in, const RadiusRange& radii, double youngs_modulus, double stress) {
+  return holding_step(in, radii.smallest, youngs_modulus, stress) / press(radii);
 }
 
 }  // namespace packmpi::input

@@ -35,4 +35,8 @@ namespace packmpi::input {
 /// contacts under the weight of the bed bear (doc/theory.md, "Time step").
 [[nodiscard]] double automatic_step(const Input& in, const RadiusRange& radii, double youngs_modulus);
 
+/// The step [s] beyond which contacts under a stress [Pa] begin to chatter: with friction that remembers a particle is
+/// held by springs on all sides.
+[[nodiscard]] double step_under(const Input& in, const RadiusRange& radii, double youngs_modulus, double stress);
+
 }  // namespace packmpi::input

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
@@ -9,6 +10,7 @@ namespace packmpi::observe {
 Bulk bulk_of(const scene::Scene& scene, double surface) {
   constexpr double low = 0.2, high = 0.8;
   const double wanted = scene.container.height();
+  if (scene.container.lid) return {low * *scene.container.lid, high * *scene.container.lid};
   const double height = surface < high * wanted ? surface : wanted;
   return {low * height, high * height};
 }
@@ -16,7 +18,7 @@ Bulk bulk_of(const scene::Scene& scene, double surface) {
 Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, const Bulk& bulk) {
   const int dimension = scene.container.dimension;
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  const double height = scene.container.height();
+  const double height = std::min(scene.container.height(), scene.container.lid.value_or(HUGE_VAL));
 
   const auto count = static_cast<std::size_t>(store.owned());
   std::array<std::vector<double>, 3> solid{std::vector<double>(count), std::vector<double>(count),

@@ -25,7 +25,8 @@ namespace packmpi::observe {
 [[nodiscard]] double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
                                     const scene::Scene& scene, std::int64_t most_stored = std::int64_t{1} << 24);
 
-/// The bulk of a bed: heights [m] between 0.2 and 0.8 of H_d; of a bed that does not reach 0.8 H_d, of its own surface.
+/// The bulk of a bed: heights [m] between 0.2 and 0.8 of H_d; of a bed that does not reach 0.8 H_d, of its own surface;
+/// under a lid, of the lid's height.
 struct Bulk {
   double low = 0.0, high = 0.0;
   [[nodiscard]] bool has(double height) const noexcept { return height >= low && height < high; }
@@ -36,7 +37,7 @@ struct Bulk {
 
 /// Solid fractions (CC16 eq. 22).
 struct Density {
-  double phi;       ///< below H_d
+  double phi;       ///< below H_d, or the lid if that is lower
   double phi_bulk;  ///< of the bulk; 0 if that is empty
 };
 [[nodiscard]] Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,

@@ -1,6 +1,7 @@
 #include "observe/rest.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "dynamics/contact_law.hpp"
 #include "observe/measure.hpp"
@@ -9,17 +10,22 @@
 namespace packmpi::observe {
 namespace {
 
-/// Upward force of floor and walls on the particles [N].
-double upward_force(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                    const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
+/// Vertical force on the particles [N]: upward of floor and walls, downward of the lid.
+struct Borne {
+  double by_walls, by_lid;
+};
+Borne vertical_forces(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                      const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::vector<double> forces;
+  std::array<std::vector<double>, 2> forces;
   const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double) {
-    forces.push_back(dynamics::wall_contact(scene, law, store, i, wall, stored, entry).force[vertical]);
+    forces.at(wall == neighbor::Wall::lid ? 1 : 0)
+        .push_back(dynamics::wall_contact(scene, law, store, i, wall, stored, entry).force[vertical]);
   };
   each_touching_wall(store, scene.container, neighborhood.walls(), add);
-  return comm::exact_sum(comm, forces);
+  const std::vector<double> sums = comm::exact_sums(comm, forces);
+  return {sums[0], -sums[1]};
 }
 
 /// What floor and walls must bear of particles at rest [N].
@@ -45,7 +51,8 @@ Rest rest(const comm::Comm& comm, const particles::Store& store, const scene::Sc
   result.kinetic_energy = moving.kinetic_energy / mgd;
   const auto particles = static_cast<double>(comm.sum(std::int64_t{store.owned()}));
   const double borne = load(scene, moving, particles);
-  if (borne > 0.0) result.support = upward_force(comm, store, scene, law, neighborhood) / borne;
+  const Borne forces = vertical_forces(comm, store, scene, law, neighborhood);
+  if (borne > 0.0) result.support = forces.by_walls / (borne + forces.by_lid);
   return result;
 }
 

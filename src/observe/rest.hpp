@@ -26,7 +26,8 @@ struct Rest {
   double unbalanced_force = 0.0;  ///< mean net force on a particle over the mean contact force: observe::balance()
   double kinetic_energy = 0.0;    ///< mean of a particle, spin included, over m g d of a particle of mean mass and size
   /// Vertical force of floor and walls on the particles, friction included, over the weight that they must bear: less
-  /// what a fluid lifts of particles at rest. 1 at rest; 0 if the fluid lifts it all.
+  /// what a fluid lifts of particles at rest; and with a lid over what it presses with, too. 1 at rest; 0 if the fluid
+  /// lifts it all.
   double support = 0.0;
   double mean_overlap = 0.0;   ///< of touching particles, over the smaller radius
   double worst_overlap = 0.0;  ///< of two particles, or with a wall, over the smaller radius

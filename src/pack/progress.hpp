@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "confine/state.hpp"
 #include "control/filling.hpp"
 #include "report/record.hpp"
 
@@ -48,6 +49,7 @@ struct Progress {
   double height_before_relaxation = 0.0;  ///< [m] before the last of them; 0 if there was none
   report::SeriesMark series;              ///< NAME.steps.csv
   control::Filling filling;               ///< towards a density; of no meaning without a target
+  confine::State confined;                ///< lid and sides; of no meaning before they move
   PhaseProgress now;
 };
 

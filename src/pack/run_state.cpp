@@ -63,6 +63,23 @@ void each_field(F& filling, Visit visit) {
   visit("layer_fractions", layer_fractions);
 }
 
+template <class C, class Visit>
+requires std::is_same_v<std::remove_const_t<C>, confine::State>
+void each_field(C& confined, Visit visit) {
+  auto& [on, from, lid, lid_speed, size, speed, steps, phi_before, full, work, over] = confined;
+  visit("on", on);
+  visit("from", from);
+  visit("lid", lid);
+  visit("lid_speed", lid_speed);
+  visit("size", size);
+  visit("speed", speed);
+  visit("steps", steps);
+  visit("phi_before", phi_before);
+  visit("full", full);
+  visit("work", work);
+  visit("over", over);
+}
+
 template <class Now, class Visit>
 requires std::is_same_v<std::remove_const_t<Now>, PhaseProgress>
 void each_field(Now& now, Visit visit) {
@@ -82,7 +99,7 @@ template <class P, class Visit>
 requires std::is_same_v<std::remove_const_t<P>, Progress>
 void each_field(P& progress, Visit visit) {
   auto& [first_ids, count, moving_from, energy_given, steps, relaxation_steps, particle_steps, layers, height,
-         compaction_rate, relaxations, height_before_relaxation, series, filling, now] = progress;
+         compaction_rate, relaxations, height_before_relaxation, series, filling, confined, now] = progress;
   visit("first_ids", first_ids);
   visit("count", count);
   visit("moving_from", moving_from);
@@ -97,6 +114,7 @@ void each_field(P& progress, Visit visit) {
   visit("height_before_relaxation", height_before_relaxation);
   visit("series", series);
   visit("filling", filling);
+  visit("confined", confined);
   each_field(now, visit);
 }
 
@@ -114,8 +132,8 @@ void each_field(State& state, Visit visit) {
 }
 
 template <class T>
-constexpr bool is_struct =
-    std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> || std::is_same_v<T, control::Filling>;
+constexpr bool is_struct = std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> ||
+                           std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State>;
 
 constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
@@ -128,7 +146,7 @@ Phase phase_of(const std::string& name) {
 // What a scene does not use is not there.
 template <class T>
 bool is_off(const T& value) {
-  if constexpr (std::is_same_v<T, control::Filling>) return !value.on;
+  if constexpr (std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State>) return !value.on;
   return false;
 }
 

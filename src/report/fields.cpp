@@ -1,5 +1,7 @@
 #include "report/fields.hpp"
 
+#include <utility>
+
 #include "base/voids.hpp"
 
 namespace packmpi::report {
@@ -33,42 +35,64 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
     fields.push_back({"target_phi_bulk", "-", r.density.fraction});
     fields.push_back({"target_tolerance", "-", r.density.tolerance});
   }
+  if (r.confined.on) {
+    fields.push_back({"target_vertical_stress", "Pa", r.confined.vertical});
+    if (r.confined.lateral > 0.0) fields.push_back({"target_lateral_stress", "Pa", r.confined.lateral});
+    fields.push_back({"target_stress_tolerance", "-", r.confined.tolerance});
+  }
   return fields;
 }
 
+std::vector<disk::Field> confined_fields(const confine::Outcome& c) {
+  if (!c.on) return {};
+  return {{"lid", "m", c.lid},
+          {"confined_size", "m", c.size},
+          {"stress_on_lid", "Pa", c.on_lid},
+          {"stress_on_floor", "Pa", c.on_floor},
+          {"stress_on_sides", "Pa", c.on_sides},
+          {"stress_of_contacts", "Pa", c.of_contacts},
+          {"vertical_stress_at_rest", "Pa", c.vertical_at_rest},
+          {"lateral_over_vertical_stress", "-", c.ratio},
+          {"phi_bulk_before_confinement", "-", c.phi_before},
+          {"work_of_confinement", "J", c.work},
+          {"confinement_steps", "", c.steps}};
+}
+
 std::vector<disk::Field> achieved_fields(const RunRecord& r) {
-  return {{"particles", "", r.particles},
-          {"height", "m", r.height},
-          {"top", "m", r.top},
-          {"phi", "-", r.phi},
-          {"porosity", "-", porosity(r.phi)},
-          {"void_ratio", "-", void_ratio(r.phi)},
-          {"phi_bulk", "-", r.phi_bulk},
-          {"porosity_bulk", "-", porosity(r.phi_bulk)},
-          {"void_ratio_bulk", "-", void_ratio(r.phi_bulk)},
-          {"compaction_rate", "1/s", r.compaction_rate},
-          {"bulk", "m", std::vector<double>{r.bulk.low, r.bulk.high}},
-          {"coordination", "-", r.rest.network.coordination},
-          {"coordination_without_rattlers", "-", r.rest.network.held_coordination},
-          {"rattlers", "-", r.rest.network.rattlers},
-          {"mean_overlap", "-", r.rest.mean_overlap},
-          {"kinetic_energy", "J", r.kinetic_energy},
-          {"floor_force", "N", r.floor_force},
-          {"weight", "N", r.weight},
-          {"mean_radius", "m", r.mean_radius},
-          {"sd_radius", "m", r.sd_radius},
-          {"min_radius", "m", r.min_radius},
-          {"max_radius", "m", r.max_radius},
-          {"time_step", "s", r.time_step},
-          {"steps", "", r.steps},
-          {"duration", "s", r.duration},
-          {"particle_steps", "", r.particle_steps},
-          {"relaxations", "", r.relaxations},
-          {"relaxation_steps", "", r.relaxation_steps},
-          {"height_before_relaxation", "m", r.height_before_relaxation},
-          {"reached", "", r.reached},
-          {"stop_reason", "", r.stop_reason},
-          {"targets_met", "", r.targets_met}};
+  std::vector<disk::Field> fields{{"particles", "", r.particles},
+                                  {"height", "m", r.height},
+                                  {"top", "m", r.top},
+                                  {"phi", "-", r.phi},
+                                  {"porosity", "-", porosity(r.phi)},
+                                  {"void_ratio", "-", void_ratio(r.phi)},
+                                  {"phi_bulk", "-", r.phi_bulk},
+                                  {"porosity_bulk", "-", porosity(r.phi_bulk)},
+                                  {"void_ratio_bulk", "-", void_ratio(r.phi_bulk)},
+                                  {"compaction_rate", "1/s", r.compaction_rate},
+                                  {"bulk", "m", std::vector<double>{r.bulk.low, r.bulk.high}},
+                                  {"coordination", "-", r.rest.network.coordination},
+                                  {"coordination_without_rattlers", "-", r.rest.network.held_coordination},
+                                  {"rattlers", "-", r.rest.network.rattlers},
+                                  {"mean_overlap", "-", r.rest.mean_overlap},
+                                  {"kinetic_energy", "J", r.kinetic_energy},
+                                  {"floor_force", "N", r.floor_force},
+                                  {"weight", "N", r.weight},
+                                  {"mean_radius", "m", r.mean_radius},
+                                  {"sd_radius", "m", r.sd_radius},
+                                  {"min_radius", "m", r.min_radius},
+                                  {"max_radius", "m", r.max_radius},
+                                  {"time_step", "s", r.time_step},
+                                  {"steps", "", r.steps},
+                                  {"duration", "s", r.duration},
+                                  {"particle_steps", "", r.particle_steps},
+                                  {"relaxations", "", r.relaxations},
+                                  {"relaxation_steps", "", r.relaxation_steps},
+                                  {"height_before_relaxation", "m", r.height_before_relaxation},
+                                  {"reached", "", r.reached},
+                                  {"stop_reason", "", r.stop_reason},
+                                  {"targets_met", "", r.targets_met}};
+  for (disk::Field& field : confined_fields(r.confined)) fields.push_back(std::move(field));
+  return fields;
 }
 
 std::vector<disk::Field> audit_fields(const Audit& a) {

@@ -81,14 +81,35 @@ void add_rest(const scene::Scene& scene, const RunRecord& record, std::vector<st
 
 void add_density(const RunRecord& record, std::vector<std::string>& missed) {
   const DensityTarget& wanted = record.density;
-  const double off = record.phi_bulk - wanted.fraction;
+  const double got = record.confined.on ? record.confined.phi_before : record.phi_bulk;
+  const double off = got - wanted.fraction;
   if (!wanted.on() || std::abs(off) <= wanted.tolerance) return;
   missed.push_back(
       fmt::format("{}: the bulk has solid fraction {:.4f} (porosity {:.4f}, void ratio {:.4f}), it is to be {:.4f} "
                   "within {:g}; use "
                   "thinner layers, which correct more often, another seed, or a wider target.tolerance",
-                  wanted.key, record.phi_bulk, porosity(record.phi_bulk), void_ratio(record.phi_bulk), wanted.fraction,
-                  wanted.tolerance));
+                  wanted.key, got, porosity(got), void_ratio(got), wanted.fraction, wanted.tolerance));
+}
+
+// Where the stress is not what was asked for, and what to change.
+void add_confined(const scene::Scene& scene, const confine::Outcome& got, std::vector<std::string>& missed) {
+  if (!got.on) return;
+  const std::string more = fmt::format(
+      "it needs more time: raise confinement.wait (now {:.3g} s) or "
+      "contact.damping_ratio ({:.3g})",
+      got.seconds, scene.in.contact.damping_ratio);
+  const auto off = [&](std::size_t k, const char* key, const std::string& words) {
+    if (std::abs(got.misfit.at(k)) <= got.tolerance) return;
+    missed.push_back(fmt::format("confinement.{}: {}, off by {:.2g} of what was asked for, beyond {:g}; {}", key, words,
+                                 std::abs(got.misfit.at(k)), got.tolerance, more));
+  };
+  const char* vertical = scene.in.confinement->isotropic ? "isotropic" : "vertical";
+  off(0, vertical, fmt::format("the lid bears {:.4g} Pa of {:.4g} Pa", got.on_lid, got.vertical));
+  off(1, vertical,
+      fmt::format("the contacts bear {:.4g} Pa, and lid and weight want {:.4g} Pa", got.of_contacts.back(),
+                  got.vertical_at_rest));
+  off(2, scene.in.confinement->isotropic ? "isotropic" : "lateral",
+      fmt::format("the sides do not bear {:.4g} Pa", got.lateral));
 }
 
 void add_audit(const Audit& audit, std::vector<std::string>& missed) {
@@ -155,6 +176,7 @@ std::vector<std::string> missed_targets(const scene::Scene& scene, const RunReco
                     record.height, record.target_height, record.layers.size(), record.stop_reason));
   }
   add_density(record, missed);
+  add_confined(scene, record.confined, missed);
   add_audit(record.audit, missed);
   add_rest(scene, record, missed);
   return missed;

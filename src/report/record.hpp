@@ -9,6 +9,7 @@
 
 #include "base/digest.hpp"
 #include "base/types.hpp"
+#include "confine/outcome.hpp"
 #include "observe/measure.hpp"
 #include "observe/rest.hpp"
 #include "observe/size_match.hpp"
@@ -101,6 +102,7 @@ struct RunRecord {
   double height = 0.0, top = 0.0;  ///< [m]
   double phi = 0.0;                ///< solid fraction below H_d (CC16 eq. 22)
   double phi_bulk = 0.0;           ///< solid fraction of the bulk
+  confine::Outcome confined;       ///< [confinement]
   observe::Bulk bulk;              ///< [m] its bounds
   double compaction_rate = 0.0;    ///< d phi_bulk / dt at the end [1/s]
   observe::Rest rest;              ///< how near to rest, and the contact network

@@ -38,6 +38,21 @@ void list_density(Buffer& out, const RunRecord& r) {
   line(out, "void ratio in the bulk", wanted(void_ratio), number(void_ratio(r.phi_bulk)));
 }
 
+void list_stress(Buffer& out, const confine::Outcome& c) {
+  if (!c.on) return;
+  const std::string lateral = c.lateral > 0.0 ? number(c.lateral) : "";
+  line(out, "height of the lid [m]", "", number(c.lid));
+  line(out, "stress on the lid [Pa]", number(c.vertical), number(c.on_lid));
+  line(out, "stress of the contacts, vertical [Pa]", number(c.vertical_at_rest), number(c.of_contacts.back()));
+  for (std::size_t a = 0; a < c.size.size(); ++a) {
+    line(out, fmt::format("stress of the contacts, {} [Pa]", "xy"[a]), lateral, number(c.of_contacts[a]));
+    if (c.on_sides[a] > 0.0)
+      line(out, fmt::format("stress on the wall {} [Pa]", "xy"[a]), lateral, number(c.on_sides[a]));
+  }
+  line(out, c.lateral > 0.0 ? "lateral over vertical stress" : "lateral over vertical stress, K0", "", number(c.ratio));
+  line(out, "solid fraction in the bulk before the lid", "", number(c.phi_before));
+}
+
 /// The middle column has targets only.
 void compare(Buffer& out, const RunRecord& r) {
   fmt::format_to(std::back_inserter(out), "{:.96}\n", r.name);
@@ -47,6 +62,7 @@ void compare(Buffer& out, const RunRecord& r) {
   line(out, "height [m]", by_height ? number(r.target_height) : "", number(r.height));
   line(out, "highest top [m]", "", number(r.top));
   list_density(out, r);
+  list_stress(out, r.confined);
   line(out, "compaction rate left, d phi_bulk / dt [1/s]", "", number(r.compaction_rate));
   line(out, "mean radius [m]", number(r.target_mean_radius), number(r.mean_radius));
   line(out, "standard deviation of the radius [m]", number(r.target_sd_radius), number(r.sd_radius));

@@ -51,8 +51,10 @@ void Bed::advance(std::int64_t steps) {
 }
 
 double Bed::time() const {
-  return static_cast<double>(progress.steps - progress.relaxation_steps) * scene.settling.time_step +
-         static_cast<double>(progress.relaxation_steps) * scene.time_step;
+  const std::int64_t of_layers = progress.steps - progress.relaxation_steps - progress.confined.steps;
+  return static_cast<double>(of_layers) * scene.settling.time_step +
+         static_cast<double>(progress.relaxation_steps) * scene.time_step +
+         static_cast<double>(progress.confined.steps) * scene.confining_step;
 }
 
 dynamics::Moment Bed::moment() const { return {std::ssize(progress.first_ids), progress.steps, time()}; }

@@ -26,6 +26,7 @@ struct Bed {
   particles::Store store;
   neighbor::Neighborhood neighborhood;
   dynamics::Stepper stepper;
+  geometry::Container* box = nullptr;      ///< scene.container where it may move, under [confinement]; not owned
   pack::Progress progress;                 ///< frozen particles are in neighborhood.frozen(), not in store
   double stepping = 0.0, inserting = 0.0;  ///< [s] wall time of this rank, since the start or restart
 

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <optional>
+
 #include "base/log.hpp"
 #include "base/voids.hpp"
 #include "disk/text_file.hpp"
@@ -10,6 +12,7 @@
 #include "report/report.hpp"
 #include "run/analyze.hpp"
 #include "run/bed.hpp"
+#include "run/confine.hpp"
 #include "run/counters.hpp"
 #include "run/files.hpp"
 #include "run/fill.hpp"
@@ -74,6 +77,19 @@ void tell_density(const report::RunRecord& record) {
              fmt::format("density of the bulk: solid fraction {:.4f}, porosity {:.4f}, void ratio {:.4f}", phi,
                          porosity(phi), void_ratio(phi)),
              {{"phi_bulk", phi}, {"porosity_bulk", porosity(phi)}, {"void_ratio_bulk", void_ratio(phi)}});
+}
+
+void tell_stress(const confine::Outcome& got) {
+  if (!got.on) return;
+  log::event("stress",
+             fmt::format("confinement: {:.4g} Pa on the lid at {:.6g} m, {:.4g} Pa of the contacts (at rest {:.4g}), "
+                         "lateral over vertical {:.3f}; solid fraction {:.4f} before",
+                         got.on_lid, got.lid, got.of_contacts.back(), got.vertical_at_rest, got.ratio, got.phi_before),
+             {{"lid", got.lid},
+              {"stress_on_lid", got.on_lid},
+              {"vertical_stress_of_contacts", got.of_contacts.back()},
+              {"lateral_over_vertical_stress", got.ratio},
+              {"phi_bulk_before", got.phi_before}});
 }
 
 // How near to rest, and what was missed.
@@ -160,7 +176,10 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   for (const std::string& remark : scene.in.remarks) log::info(remark);
-  Bed bed(comm, scene);
+  std::optional<scene::Scene> moving;  // whose container a lid changes
+  if (scene.in.confinement) moving = scene;
+  Bed bed(comm, moving ? *moving : scene);
+  if (moving) bed.box = &moving->container;
   bed.progress.filling = filling;
   const Origin origin = resume(files, options, bed);
   if (scene.in.start && !origin.restarted) take_over(bed);
@@ -169,12 +188,14 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   Keeper keeper(bed, journal, files, options, origin);
   Watch watch_over(journal, keeper, guest);
   journal.filling_begins();
-  fill(bed, watch_over);
+  if (!bed.progress.confined.on) fill(bed, watch_over);
+  confine_bed(bed, watch_over);
   report::RunRecord record = targets_of(comm, scene);
   record.series_rows_in_file = journal.finish();
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
   tell_density(record);
+  tell_stress(record.confined);
   tell_sizes(scene, record.sizes);
   tell_rest(comm, record);
   take_time(comm, watch, before, record);

@@ -112,7 +112,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.density = density_target(bed);
   record.particles = at.count;
   record.height = at.height;
-  const bool full = bed.full();
+  const bool full = at.confined.on ? at.confined.full : bed.full();
   const bool counted = record.target_particles > 0;
   record.reached = counted                  ? at.count == record.target_particles
                    : record.insertion_alone ? !at.layers.empty()
@@ -146,6 +146,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.duration = bed.time();
   record.particle_steps = at.particle_steps;
   record.bytes_per_particle = bed.bytes_per_particle();
+  record.confined = confine::measure(comm, bed.store, scene, bed.neighborhood, at.confined);
   audit(bed, record);
   record.criteria = report::judge(scene, record.rest);
   if (scene.in.start && at.steps == 0 && lacks_springs(scene, at)) forget_limits_of_rest(record.criteria);

@@ -207,4 +207,22 @@ double modulus_for(const Scene& scene, double overlap, double youngs_modulus) {
   return youngs_modulus * times * std::sqrt(times);
 }
 
+double mean_stress(const input::Confinement& asked) {
+  constexpr double at_rest = 0.5;  // lateral over vertical stress
+  const double lateral = asked.on_sides().value_or(at_rest * asked.on_lid());
+  return (asked.on_lid() + 2.0 * lateral) / 3.0;
+}
+
+double confined_overlap(const Scene& scene) {
+  if (!scene.in.confinement) return 0.0;
+  constexpr double contacts = 5.0, uneven = 0.9;
+  // In the plane stress is that of a sheet as thick as a mean particle: a contact bears as much as in space.
+  const double fraction = expected_fraction(scene).value;
+  const double modulus = input::pair_modulus(scene.in.particles, scene.in.particles.youngs_modulus);
+  const double squeeze = 3.0 * std::numbers::sqrt2 * std::numbers::pi * mean_stress(*scene.in.confinement) /
+                         (modulus * fraction * contacts);
+  const double root = elementary::cube_root(squeeze);
+  return uneven * root * root;
+}
+
 }  // namespace packmpi::scene

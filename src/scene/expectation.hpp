@@ -63,4 +63,9 @@ struct Filling {
 /// The modulus [Pa] of which it is `overlap`, from one of any other: overlaps go with E^(-2/3).
 [[nodiscard]] double modulus_for(const Scene& scene, double overlap, double youngs_modulus);
 
+/// Mean stress [Pa] that [confinement] asks for; of sides that stay where they are about half of the vertical one.
+[[nodiscard]] double mean_stress(const input::Confinement& asked);
+/// Mean overlap of touching particles over their radius under the stress of [confinement], likewise; 0 without.
+[[nodiscard]] double confined_overlap(const Scene& scene);
+
 }  // namespace packmpi::scene

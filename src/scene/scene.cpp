@@ -122,6 +122,29 @@ void check_softness(const input::Input& in, const Scene& scene, const char* key,
                          youngs_modulus < 1e4 ? "; a number without a unit is in Pa: \"100 MPa\" has one" : ""));
 }
 
+// Contacts under the stress of [confinement] are stiffer than those that eq. (23) thinks of.
+double choose_confining_step(const input::Input& in, const Scene& scene) {
+  if (!in.confinement) return 0.0;
+  constexpr double share = 0.5;  // of the stability limit
+  const input::Confinement& asked = *in.confinement;
+  const double most = std::max(asked.on_lid(), asked.on_sides().value_or(0.0));
+  const double limit = input::step_under(in, range(scene.sizes), in.particles.youngs_modulus, most);
+  return std::min(scene.time_step, share * limit);
+}
+
+// Refuses a stress that would crush: particles of a modulus that is too low for it.
+void check_crushing(const input::Input& in, const Scene& scene) {
+  if (!in.confinement) return;
+  const double limit = in.rest.mean_overlap;
+  const double overlap = confined_overlap(scene);
+  if (!(overlap > limit)) return;
+  const double times = overlap / limit;
+  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.2g} radii in the mean, beyond "
+                         "rest.mean_overlap = {:g}: use particles.youngs_modulus = {:.2g} Pa or more, or less stress",
+                         mean_stress(*in.confinement), overlap, limit,
+                         1.1 * in.particles.youngs_modulus * times * std::sqrt(times)));
+}
+
 Features features_of(const input::Input& in) {
   Features f;
   f.dimension = in.container.dimension;
@@ -171,7 +194,9 @@ void choose_stages(const input::Input& in, Scene& scene) {
   scene.time_step =
       choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
   scene.settling = choose_settling(in, scene.sizes, scene.time_step);
+  scene.confining_step = choose_confining_step(in, scene);
   check_softness(in, scene, "particles.youngs_modulus", in.particles.youngs_modulus);
+  check_crushing(in, scene);
   if (softer(in)) check_softness(in, scene, "layers.youngs_modulus", *in.layers.youngs_modulus);
   if (scene.features.drag) check_drag(in, scene.sizes, std::max(scene.time_step, scene.settling.time_step));
 }

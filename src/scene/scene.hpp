@@ -41,6 +41,7 @@ struct Scene {
   Stage settling;           ///< of the layers
   double relaxation = 0.0;  ///< [s] duration of the final stage
   double wait = 0.0;        ///< [s] that it goes on at most until the bed is at rest
+  double confining_step = 0.0;    ///< [s] under the stress of [confinement]; 0 without
   double force_quantum = 0.0;     ///< [N] a power of two: forces are summed as integers of this unit
   double speed_bound = 0.0;       ///< [m/s] no particle of a valid run is as fast
   std::int64_t most_columns = 1;  ///< of the lateral grid: memory for empty ground is bounded (doc/theory.md)
