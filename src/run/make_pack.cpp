@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "base/log.hpp"
-#include "base/voids.hpp"
 #include "disk/text_file.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
 #include "report/report.hpp"
+#include "report/tell.hpp"
 #include "run/analyze.hpp"
 #include "run/bed.hpp"
 #include "run/confine.hpp"
@@ -52,63 +52,6 @@ void write_outputs(const Bed& bed, const Files& files, report::RunRecord& record
   });
   count(bed, contacts.pairs_here, record);
   disk::write_text(bed.comm, files.summary, report::to_json(record));
-}
-
-// How near the sizes are to those asked; one line of the log.
-void tell_sizes(const scene::Scene& scene, const observe::SizeMatches& sizes) {
-  if (scene.sizes.equal()) return;
-  log::event(
-      "sizes",
-      fmt::format("sizes: D50 by mass {:.4g} m, target {:.4g}; Cu {:.3g}, target {:.3g}; the curves differ by at "
-                  "most {:.2g} by number, {:.2g} by mass",
-                  sizes.by_mass.achieved.d50, sizes.by_mass.target.d50, sizes.by_mass.achieved.uniformity(),
-                  sizes.by_mass.target.uniformity(), sizes.by_number.distance, sizes.by_mass.distance),
-      {{"d50_by_mass", sizes.by_mass.achieved.d50},
-       {"target_d50_by_mass", sizes.by_mass.target.d50},
-       {"cu_by_mass", sizes.by_mass.achieved.uniformity()},
-       {"target_cu_by_mass", sizes.by_mass.target.uniformity()},
-       {"distance_by_number", sizes.by_number.distance},
-       {"distance_by_mass", sizes.by_mass.distance}});
-}
-
-void tell_density(const report::RunRecord& record) {
-  const double phi = record.phi_bulk;
-  log::event("density",
-             fmt::format("density of the bulk: solid fraction {:.4f}, porosity {:.4f}, void ratio {:.4f}", phi,
-                         porosity(phi), void_ratio(phi)),
-             {{"phi_bulk", phi}, {"porosity_bulk", porosity(phi)}, {"void_ratio_bulk", void_ratio(phi)}});
-}
-
-void tell_stress(const confine::Outcome& got) {
-  if (!got.on) return;
-  log::event("stress",
-             fmt::format("confinement: {:.4g} Pa on the lid at {:.6g} m, {:.4g} Pa of the contacts (at rest {:.4g}), "
-                         "lateral over vertical {:.3f}; solid fraction {:.4f} before",
-                         got.on_lid, got.lid, got.of_contacts.back(), got.vertical_at_rest, got.ratio, got.phi_before),
-             {{"lid", got.lid},
-              {"stress_on_lid", got.on_lid},
-              {"vertical_stress_of_contacts", got.of_contacts.back()},
-              {"lateral_over_vertical_stress", got.ratio},
-              {"phi_bulk_before", got.phi_before}});
-}
-
-// How near to rest, and what was missed.
-void tell_rest(const comm::Comm& comm, const report::RunRecord& record) {
-  std::string line = "rest:";
-  for (const report::Criterion& c : record.criteria) {
-    line += fmt::format("{} {} {:.2e}", line.back() == ':' ? "" : ",", c.words, c.value);
-  }
-  log::event("rest", line,
-             {{"unbalanced_force", record.rest.unbalanced_force},
-              {"kinetic_energy", record.rest.kinetic_energy},
-              {"support", record.rest.support},
-              {"mean_overlap", record.rest.mean_overlap},
-              {"worst_overlap", record.rest.worst_overlap},
-              {"rattlers", record.rest.network.rattlers},
-              {"coordination", record.rest.network.coordination},
-              {"coordination_without_rattlers", record.rest.network.held_coordination}});
-  if (comm.rank() != 0) return;
-  for (const std::string& words : record.missed) log::warn("missed: " + words);
 }
 
 // A run's own: the journal tells, the keeper ends; a guest listens.
@@ -194,12 +137,20 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   record.series_rows_in_file = journal.finish();
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
+<<<<<<< HEAD
   tell_density(record);
   tell_stress(record.confined);
   tell_sizes(scene, record.sizes);
   tell_rest(comm, record);
   take_time(comm, watch, before, record);
   guest.measured(bed, record);
+=======
+  report::tell(comm, scene, record);
+  record.wall_seconds = comm.max(watch.seconds());
+  record.steps_here = record.steps - before.steps;
+  record.particle_steps_per_second =
+      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
+>>>>>>> 1aa2855 (The last lines of the log are report's; the reference has [confinement])
   write_outputs(bed, files, record);
   keeper.finished();
   return record;
