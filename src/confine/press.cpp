@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/log.hpp"
@@ -32,42 +33,100 @@ State begin(const scene::Scene& scene, double top) {
 }
 
 Press::Press(const comm::Comm& comm, const scene::Scene& scene, geometry::Container& box, State& state,
-             particles::Store& store, neighbor::Neighborhood& neighborhood)
+             particles::Store& store, neighbor::Neighborhood& neighborhood, scene::Ownership& ownership)
     : comm_(&comm),
       scene_(&scene),
       box_(&box),
       state_(&state),
       store_(&store),
       neighborhood_(&neighborhood),
+      ownership_(&ownership),
       law_(dynamics::make_law(scene, {scene.confining_step, scene.in.particles.youngs_modulus})),
       gains_(gains_of(scene, state.from, observe::motion(comm, store, scene).mass)),
       lid_tick_(lid_tick(scene, gains_)),
       side_tick_(side_tick(scene, gains_)),
+      periods_move_(scene.in.confinement->on_sides().has_value() && scene.features.periodic),
       window_(steps_in(crossings_a_window * gains_.crossing, scene.confining_step)),
       row_(steps_in(scene.in.output.log_every, scene.confining_step)),
       most_(steps_in(scene.in.confinement->wait.value_or(most_crossings * gains_.crossing), scene.confining_step)) {}
 
-void Press::steer_lid() {
-  const double stress = on_lid(*comm_, *store_, *scene_, law_, *neighborhood_);
+// Lid, and lateral walls that move: by the forces on them.
+void Press::steer_walls() {
+  const input::Confinement& asked = *scene_->in.confinement;
   const double seconds = static_cast<double>(lid_tick_) * scene_->confining_step;
-  const double excess = stress - scene_->in.confinement->on_lid();
-  state_->lid_speed = next_speed(gains_, lid_mass(*scene_, gains_), state_->lid_speed, excess, seconds);
   const auto vertical = static_cast<std::size_t>(box_->vertical());
-  state_->work -= stress * area_across(*scene_, vertical) * state_->lid_speed * seconds;
+  const double mass = lid_mass(*scene_, gains_);
+  const Vec3 stress = on_high_walls(*comm_, *store_, *scene_, law_, *neighborhood_);
+  state_->lid_speed = next_speed(gains_, mass, state_->lid_speed, stress[vertical] - asked.on_lid(), seconds);
+  state_->work -= stress[vertical] * area_across(*scene_, vertical) * state_->lid_speed * seconds;
+  for (std::size_t a = 0; a < vertical && asked.on_sides(); ++a) {
+    if (box_->periodic[a]) continue;
+    state_->speed[a] = next_speed(gains_, mass, state_->speed[a], stress[a] - *asked.on_sides(), seconds);
+    state_->work -= stress[a] * area_across(*scene_, a) * state_->speed[a] * seconds;
+  }
 }
 
-// What comes before a step: the servo, when it is its turn, and the motion; lists are made anew when it was far.
-void Press::move() {
-  if (state_->steps % lid_tick_ == 0) steer_lid();
-  const double step = state_->lid_speed * scene_->confining_step;
-  state_->lid += step;
+// Periodic axes: by the stress of the contacts.
+void Press::steer_periods() {
+  const input::Confinement& asked = *scene_->in.confinement;
+  const double seconds = static_cast<double>(side_tick_) * scene_->confining_step;
+  const Vec3 stress = of_contacts(*comm_, *store_, *scene_, law_, *neighborhood_).contacts;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box_->lateral_axes()); ++a) {
+    if (!box_->periodic[a]) continue;
+    const double excess = stress[a] - *asked.on_sides();
+    state_->speed[a] = next_speed(gains_, side_mass(*scene_, gains_, a), state_->speed[a], excess, seconds);
+    state_->work -= stress[a] * area_across(*scene_, a) * state_->speed[a] * seconds;
+  }
+}
+
+// Lists are made anew when walls have moved far.
+void Press::move_walls() {
+  const double dt = scene_->confining_step;
+  double fastest = std::abs(state_->lid_speed);
+  state_->lid += state_->lid_speed * dt;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box_->lateral_axes()); ++a) {
+    if (box_->periodic[a]) continue;
+    state_->size[a] += state_->speed[a] * dt;
+    fastest = std::max(fastest, std::abs(state_->speed[a]));
+  }
   apply(*state_, *box_);
   if (rebuilds_ != neighborhood_->rebuilds()) {
     rebuilds_ = neighborhood_->rebuilds();
     travel_ = 0.0;
   }
-  travel_ += std::abs(step);
+  travel_ += fastest * dt;
   if (travel_ >= share_of_skin * scene_->skin) neighborhood_->rebuild(*store_);
+}
+
+// The way of a whole tick at once: box, columns and particles together.
+void Press::move_periods() {
+  const double seconds = static_cast<double>(side_tick_) * scene_->confining_step;
+  std::array<double, 2> factors{1.0, 1.0};
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box_->lateral_axes()); ++a) {
+    if (!box_->periodic[a]) continue;
+    const double before = state_->size[a], asked = scene_->in.container.size[a];
+    state_->size[a] += state_->speed[a] * seconds;
+    factors[a] = state_->size[a] / before;
+    if (state_->size[a] >= (1.0 - scene::most_shortening) * asked) continue;
+    comm::fail_together(*comm_, ExitCode::numerical_failure,
+                        fmt::format("confinement: the periodic axis {} is shortened by more than {:g} of its length: "
+                                    "the pack is too loose for its stress; use a denser pack, more friction, or less "
+                                    "lateral stress",
+                                    "xy"[a], scene::most_shortening));
+  }
+  apply(*state_, *box_);
+  ownership_->stretch(*box_);
+  neighborhood_->deform(*store_, factors);
+}
+
+// What comes before a step.
+void Press::move() {
+  if (periods_move_ && state_->steps % side_tick_ == 0) {
+    steer_periods();
+    move_periods();
+  }
+  if (state_->steps % lid_tick_ == 0) steer_walls();
+  move_walls();
 }
 
 std::int64_t Press::next_stop(std::int64_t to_look) const {

@@ -9,6 +9,7 @@
 #include "dynamics/law.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
+#include "scene/ownership.hpp"
 #include "scene/scene.hpp"
 
 namespace packmpi::confine {
@@ -30,7 +31,7 @@ class Press {
  public:
   /// Collective. `state` is applied to the box already.
   Press(const comm::Comm& comm, const scene::Scene& scene, geometry::Container& box, State& state,
-        particles::Store& store, neighbor::Neighborhood& neighborhood);
+        particles::Store& store, neighbor::Neighborhood& neighborhood, scene::Ownership& ownership);
 
   /// Collective. From where the state says until the stress is there within its tolerance and the bed at rest, both
   /// looked at after every ten crossings of a wave, or the time is up. What lid and sides do on the particles goes to
@@ -39,7 +40,10 @@ class Press {
 
  private:
   void move();
-  void steer_lid();
+  void steer_walls();
+  void steer_periods();
+  void move_walls();
+  void move_periods();
   [[nodiscard]] std::int64_t next_stop(std::int64_t to_look) const;
 
   const comm::Comm* comm_;
@@ -48,9 +52,12 @@ class Press {
   State* state_;
   particles::Store* store_;
   neighbor::Neighborhood* neighborhood_;
+  scene::Ownership* ownership_;
   dynamics::Law law_;
   Gains gains_;
-  std::int64_t lid_tick_, side_tick_, window_, row_, most_;
+  std::int64_t lid_tick_, side_tick_;
+  bool periods_move_;
+  std::int64_t window_, row_, most_;
   std::int64_t rebuilds_ = -1;  // the lists that travel_ is of
   double travel_ = 0.0;         // [m] of the lid or a side since then
 };

@@ -55,18 +55,20 @@ Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, cons
   return result;
 }
 
-double on_lid(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-              const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
-  const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::vector<double> forces;
-  const neighbor::WallList& walls = neighborhood.walls();
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    if (walls.wall[w] != neighbor::Wall::lid) continue;
-    const LocalIndex i = walls.particle[w];
-    if (!(*scene.container.lid - store.position(i)[vertical] < store.radius(i))) continue;
-    forces.push_back(-dynamics::wall_contact(scene, law, store, i, neighbor::Wall::lid).force[vertical]);
+Vec3 on_high_walls(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                   const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
+  std::vector<std::vector<double>> forces(axes);
+  each_touch(store, scene, neighborhood.walls(), [&](std::int64_t, LocalIndex i, neighbor::Wall wall, double) {
+    const geometry::Plane plane = scene.container.plane(wall);
+    const auto axis = static_cast<std::size_t>(plane.axis);
+    if (plane.sign > 0.0) forces[axis].push_back(-dynamics::wall_contact(scene, law, store, i, wall).force[axis]);
+  });
+  const std::vector<double> sums = comm::exact_sums(comm, forces);
+  Vec3 stress{};
+  for (std::size_t a = 0; a < static_cast<std::size_t>(scene.container.dimension); ++a) {
+    stress[a] = sums[a] / area_across(scene, a);
   }
-  return comm::exact_sum(comm, forces) / area_across(scene, vertical);
+  return stress;
 }
 
 Stress of_contacts(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,

@@ -22,9 +22,9 @@ struct Boundary {
 /// Collective, exact. The moving state's: damping is in it.
 [[nodiscard]] Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                                    const dynamics::Law& law, const neighbor::Neighborhood& neighborhood);
-/// The lid's alone [Pa]: for each tick of its servo. Cost: a pass over the wall list.
-[[nodiscard]] double on_lid(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
-                            const dynamics::Law& law, const neighbor::Neighborhood& neighborhood);
+/// Of Boundary::high what servos move [Pa], for each of their ticks. Cost: a pass over the wall list.
+[[nodiscard]] Vec3 on_high_walls(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
+                                 const dynamics::Law& law, const neighbor::Neighborhood& neighborhood);
 
 /// Stress of the contacts of the whole specimen (Love 1927, Weber 1966): over its volume, the sum of l_a f_a, l from
 /// the centre of one particle to that of the other, or to where it touches a wall, f what it presses the other with.

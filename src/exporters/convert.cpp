@@ -85,7 +85,9 @@ void check_copies(const ConvertRequest& request, const geometry::Container& box)
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
 scene::Scene scene_of(const pack::PackFile& file) {
   try {
-    return scene::build(input::parse(file.scene(), "the scene in it", {}));
+    scene::Scene scene = scene::build(input::parse(file.scene(), "the scene in it", {}));
+    confine::apply(file.confined(), scene.container);
+    return scene;
   } catch (const Error& error) {
     throw Error(ExitCode::io_failure, error.what());
   }

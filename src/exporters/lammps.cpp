@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
@@ -61,8 +62,10 @@ std::string walls(const Specimen& s) {
     text += fmt::format("fix             wall_{0} all wall/gran granular {1} {0}plane 0 {2}\n", "xyz"[axis], law,
                         s.size[axis]);
   }
-  return text +
-         fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, "xyz"[s.vertical()]);
+  const std::optional<double>& lid = s.scene.container.lid;
+  if (lid) text += fmt::format("# the lid stands still where packmpi left it, at {} m\n", *lid);
+  return text + fmt::format("fix             floor all wall/gran granular {} {}plane 0 {}\n", law, "xyz"[s.vertical()],
+                            lid ? fmt::format("{}", *lid) : "NULL");
 }
 
 std::string drag(const Specimen& s) {

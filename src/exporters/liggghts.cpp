@@ -57,7 +57,11 @@ std::string walls(const Specimen& s) {
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s));
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s));
   }
-  return text + fmt::format(fmt::runtime(line), "xyz"[s.vertical()], "floor", 0.0, limit(s), rolling(s));
+  const char up = "xyz"[s.vertical()];
+  if (s.scene.container.lid) {
+    text += fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s));
+  }
+  return text + fmt::format(fmt::runtime(line), up, "floor", 0.0, limit(s), rolling(s));
 }
 
 std::string in_file(const Specimen& s) {

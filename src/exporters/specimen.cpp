@@ -56,6 +56,8 @@ Found look(const comm::Comm& comm, const Selection& selection, const scene::Scen
 
 std::string axis_words(const Specimen& s, std::size_t axis) {
   const char name = "xyz"[axis];
+  const std::optional<double>& lid = s.scene.container.lid;
+  if (axis == s.vertical() && lid) return fmt::format("{} from the floor at 0 to a lid at {}", name, *lid);
   if (axis == s.vertical()) return fmt::format("{} from the floor at 0, open above, H_d {}", name, s.size[axis]);
   return fmt::format("{} 0 to {} {}", name, s.size[axis], s.periodic(axis) ? "periodic" : "between walls");
 }
@@ -146,7 +148,7 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
 std::array<Extent, 3> inner_box(const Specimen& s) {
   std::array<Extent, 3> box{};
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) box[axis] = {0.0, s.size[axis]};
-  box[s.vertical()] = {0.0, std::max(s.size[s.vertical()], s.top)};
+  box[s.vertical()] = {0.0, s.scene.container.lid.value_or(std::max(s.size[s.vertical()], s.top))};
   return box;
 }
 

@@ -64,6 +64,15 @@ ColumnGrid::ColumnGrid(const Container& box, double reach, std::int64_t most) : 
   }
 }
 
+void ColumnGrid::stretch(const Container& box) {
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(box.lateral_axes()); ++axis) {
+    if (!box.periodic[axis]) continue;
+    box_.size[axis] = box.size[axis];
+    widths_[axis] = box.size[axis] / counts_[axis];
+    inverse_widths_[axis] = 1.0 / widths_[axis];
+  }
+}
+
 void ColumnGrid::neighbors(ColumnIndex column, std::vector<ColumnIndex>& out) const {
   assert(column >= 0 && column < size());
   const bool periodic_y = box_.dimension == 3 && box_.periodic[1];

@@ -20,6 +20,9 @@ class ColumnGrid {
   /// for them, and every axis one. Preconditions (asserted): reach > 0, 9 <= most <= 2^30.
   ColumnGrid(const Container& box, double reach, std::int64_t most = std::int64_t{1} << 30);
 
+  /// The same columns, stretched with the periodic axes of a box whose lengths have changed. Every rank alike.
+  void stretch(const Container& box);
+
   [[nodiscard]] const Container& box() const noexcept { return box_; }
   [[nodiscard]] std::array<int, 2> counts() const noexcept { return counts_; }
   [[nodiscard]] std::array<double, 2> widths() const noexcept { return widths_; }  ///< [m]

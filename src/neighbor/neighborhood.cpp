@@ -92,6 +92,7 @@ void Neighborhood::rebuild(particles::Store& store) {
   if (one_sided_) complete_borders(store);
   sweep_ = make_sweep(store.owned(), pairs_, walls_, halo_);
   drift_ = 0.0;
+  strained_ = 0.0;
   ++effort_.rebuilds;
   effort_.candidates += candidates_;
   effort_.rebuilding += watch.seconds();
@@ -136,14 +137,14 @@ void Neighborhood::meet(std::array<double, 2>& shared) {
 Alarm Neighborhood::follow(particles::Store& store, double max_speed, double time_step, Alarm mine) {
   drift_ += max_speed * time_step;
   if (!std::isfinite(drift_)) mine = Alarm::fault;
-  std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_, static_cast<double>(mine)};
+  std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_ + strained_, static_cast<double>(mine)};
   meet(shared);
   const auto alarm = static_cast<Alarm>(static_cast<int>(shared[1]));
   const double limit = 0.5 * scene_->skin;
   begin_missing(store);
   if (alarm == Alarm::fault || shared[0] <= limit) return alarm;
   drift_ = largest_displacement(store);
-  if (comm_->max(drift_) <= live_on * limit) return alarm;
+  if (comm_->max(drift_) + strained_ <= live_on * limit) return alarm;
   bool all_inside = true;
   for (LocalIndex i = 0; i < store.owned() && all_inside; ++i) all_inside = is_inside(store, i);
   if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) return Alarm::fault;
@@ -354,6 +355,19 @@ void Neighborhood::remember_positions(const particles::Store& store) {
   if (!scene_->features.graded) return;
   resize_tightly(radius_, total);
   for (std::size_t i = 0; i < total; ++i) radius_[i] = store.radius(static_cast<LocalIndex>(i));
+}
+
+void Neighborhood::deform(particles::Store& store, const std::array<double, 2>& factors) {
+  const geometry::Container& box = scene_->container;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
+    if (!box.periodic[a] || factors[a] == 1.0) continue;
+    for (LocalIndex i = 0; i < store.total(); ++i) {
+      double& x = store.record(i)[a];
+      x = geometry::wrap(x * factors[a], box.size[a]);
+    }
+    for (double& x : x_[a]) x *= factors[a];
+    strained_ += std::abs(factors[a] - 1.0) * scene_->column_width();  // of two that may come to touch
+  }
 }
 
 double Neighborhood::largest_displacement(const particles::Store& store) const {

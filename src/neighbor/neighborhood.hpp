@@ -58,6 +58,11 @@ class Neighborhood {
   /// are outside the container when lists are due. After a fault nothing is rebuilt.
   [[nodiscard]] Alarm follow(particles::Store& store, double max_speed, double time_step, Alarm mine = Alarm::none);
 
+  /// Every rank alike, without messages; ghosts have arrived. Owned particles and ghosts move with periodic axes whose
+  /// lengths become `factors` times what they were, in the container and in the columns: an affine deformation. The
+  /// caller changes both.
+  void deform(particles::Store& store, const std::array<double, 2>& factors);
+
   /// Is owned particle `i` where one may be: its centre less than its radius beyond a wall, and finite? Local.
   [[nodiscard]] bool is_inside(const particles::Store& store, LocalIndex i) const;
 
@@ -135,6 +140,7 @@ class Neighborhood {
   std::array<std::vector<double>, 3> x_;
   std::vector<double> radius_;
   double drift_ = 0.0;           // bound of any displacement since the rebuild, this rank [m]
+  double strained_ = 0.0;        // what deformation has added since then, the same on all ranks [m]
   std::int64_t candidates_ = 0;  // in the last rebuild
   Effort effort_;
 };

@@ -82,8 +82,9 @@ struct PackOrigin {
 
 /// One rank's share of a pack, and the scene it was made from.
 struct PackSlice {
-  PackRows rows;      ///< [rank N / ranks, (rank + 1) N / ranks)
-  std::string scene;  ///< the effective input, TOML, in the keys of today
+  PackRows rows;                 ///< [rank N / ranks, (rank + 1) N / ranks)
+  std::string scene;             ///< the effective input, TOML, in the keys of today
+  confine::State confined = {};  ///< lid and sides; off if there are none
 };
 /// Rank-local: every rank reads its own share, after check_pack(). Throws Error(io_failure).
 [[nodiscard]] PackSlice read_slice(const std::string& path, Rank rank, int ranks);

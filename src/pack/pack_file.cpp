@@ -69,6 +69,15 @@ PackRows PackFile::rows(std::int64_t begin, std::int64_t count) const {
   return pack;
 }
 
+confine::State PackFile::confined() const {
+  if (!file_.has_attribute("/summary", "lid")) return {};
+  confine::State state{.on = true, .lid = number("/summary", "lid")};
+  state.size = {number("/summary", "length_under_lid_x"), number("/summary", "length_under_lid_y")};
+  const bool possible = state.lid > 0.0 && state.size[0] > 0.0 && (dimension_ == 2 || state.size[1] > 0.0);
+  if (!possible) refuse("its lid or its sides are where none can be");
+  return state;
+}
+
 std::string PackFile::scene() const {
   const std::string scene = text("/provenance", "effective_input");
   return version_ < pack_version ? scene_in_present_names(scene) : scene;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "confine/state.hpp"
 #include "disk/sealed_file.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
@@ -27,7 +28,8 @@ class PackFile {
   /// `features` if the pack has none of it. It is checked that ends can be those of two of the particles or of one and
   /// a wall, and that numbers are finite. Cost: O(share).
   [[nodiscard]] Histories histories(Rank rank, int ranks) const;
-  [[nodiscard]] std::string scene() const;  ///< the effective input, in the keys of today
+  [[nodiscard]] confine::State confined() const;  ///< lid and sides; off if there are none
+  [[nodiscard]] std::string scene() const;        ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;
   [[nodiscard]] double number(const char* object, const char* attribute) const;
 

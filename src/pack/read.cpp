@@ -81,7 +81,7 @@ PackSlice read_slice(const std::string& path, Rank rank, int ranks) {
   return read_from(path, [&](const PackFile& file) {
     const disk::IdBlocks share{file.count(), ranks};
     const std::int64_t begin = share.begin(rank);
-    return PackSlice{file.rows(begin, share.begin(rank + 1) - begin), file.scene()};
+    return PackSlice{file.rows(begin, share.begin(rank + 1) - begin), file.scene(), file.confined()};
   });
 }
 

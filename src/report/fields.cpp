@@ -46,7 +46,8 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
 std::vector<disk::Field> confined_fields(const confine::Outcome& c) {
   if (!c.on) return {};
   return {{"lid", "m", c.lid},
-          {"confined_size", "m", c.size},
+          {"length_under_lid_x", "m", c.size.front()},
+          {"length_under_lid_y", "m", c.size.size() > 1 ? c.size[1] : 0.0},
           {"stress_on_lid", "Pa", c.on_lid},
           {"stress_on_floor", "Pa", c.on_floor},
           {"stress_on_sides", "Pa", c.on_sides},

@@ -36,7 +36,7 @@ void confine_bed(Bed& bed, Attendant& attendant) {
     return report::at_rest(report::judge(scene, observe::rest(bed.comm, bed.store, scene, bed.neighborhood)));
   };
   const auto book = [&] { bed.progress.energy_given = given + now.work; };  // before it is told or kept
-  confine::Press press(bed.comm, scene, *bed.box, now, bed.store, bed.neighborhood);
+  confine::Press press(bed.comm, scene, *bed.box, now, bed.store, bed.neighborhood, bed.ownership);
   press.run({.step = [&] { bed.advance(1); },
              .at_rest = rests,
              .moment = [&](double share) { book(), attendant.moment(share); },

@@ -137,20 +137,9 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   record.series_rows_in_file = journal.finish();
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
-<<<<<<< HEAD
-  tell_density(record);
-  tell_stress(record.confined);
-  tell_sizes(scene, record.sizes);
-  tell_rest(comm, record);
+  report::tell(comm, scene, record);
   take_time(comm, watch, before, record);
   guest.measured(bed, record);
-=======
-  report::tell(comm, scene, record);
-  record.wall_seconds = comm.max(watch.seconds());
-  record.steps_here = record.steps - before.steps;
-  record.particle_steps_per_second =
-      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
->>>>>>> 1aa2855 (The last lines of the log are report's; the reference has [confinement])
   write_outputs(bed, files, record);
   keeper.finished();
   return record;

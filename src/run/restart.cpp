@@ -106,7 +106,10 @@ std::pair<pack::RunState, std::string> read_first(const std::vector<std::string>
 
 void put_back(const pack::RunState& state, const pack::Histories& histories, Bed& bed) {
   bed.progress = state.progress;
-  if (bed.box != nullptr) confine::apply(bed.progress.confined, *bed.box);
+  if (bed.box != nullptr) {
+    confine::apply(bed.progress.confined, *bed.box);
+    bed.ownership.stretch(*bed.box);
+  }
   if (bed.scene.features.memory) bed.give(histories);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   if (bed.progress.moving_from > 0) bed.neighborhood.freeze(bed.store, bed.progress.moving_from);

@@ -32,6 +32,8 @@ class Ownership {
   bool rebalance(std::span<const std::int64_t> mine);
 
   [[nodiscard]] const geometry::ColumnGrid& grid() const noexcept { return grid_; }
+  /// See ColumnGrid::stretch(). Every rank alike.
+  void stretch(const geometry::Container& box) { grid_.stretch(box); }
   [[nodiscard]] Rank owner(geometry::ColumnIndex column) const noexcept;
   /// The columns of this rank, ascending.
   [[nodiscard]] std::span<const geometry::ColumnIndex> columns() const noexcept { return columns_; }

@@ -83,7 +83,7 @@ void check_drag(const input::Input& in, const Sizes& sizes, double time_step) {
 void check_periodic(const input::Input& in, const Scene& scene) {
   for (int axis = 0; axis < scene.container.lateral_axes(); ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double least = 3.0 * scene.column_width();
+    const double least = 3.0 * scene.room() * scene.column_width();
     if (scene.container.periodic[a] && scene.container.size[a] < least) {
       refuse(in, fmt::format(
                      "container.size: a periodic axis must be at least {:.6g} m here (three interaction ranges), so "
@@ -139,7 +139,7 @@ void check_crushing(const input::Input& in, const Scene& scene) {
   const double overlap = confined_overlap(scene);
   if (!(overlap > limit)) return;
   const double times = overlap / limit;
-  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.2g} radii in the mean, beyond "
+  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
                          "rest.mean_overlap = {:g}: use particles.youngs_modulus = {:.2g} Pa or more, or less stress",
                          mean_stress(*in.confinement), overlap, limit,
                          1.1 * in.particles.youngs_modulus * times * std::sqrt(times)));

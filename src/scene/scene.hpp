@@ -22,6 +22,9 @@ struct Friction {
   return {contact.friction, contact.wall_friction, contact.rolling_friction, contact.twisting_friction};
 }
 
+/// A periodic axis that [confinement] shortens gives up at most this share of its length.
+inline constexpr double most_shortening = 0.1;
+
 /// How particles are integrated for a while.
 struct Stage {
   double time_step = 0.0;                 ///< [s]
@@ -49,7 +52,11 @@ struct Scene {
   /// Width the columns of the lateral grid need at least: reach + skin [m], and the gap of insertion.
   [[nodiscard]] double column_width() const noexcept { return reach + skin + in.layers.gap; }
   /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns.
-  [[nodiscard]] geometry::ColumnGrid columns() const { return {container, column_width(), most_columns}; }
+  [[nodiscard]] geometry::ColumnGrid columns() const { return {container, room() * column_width(), most_columns}; }
+  /// Periodic axes that [confinement] shortens begin with columns so much wider than they need to be [-].
+  [[nodiscard]] double room() const noexcept {
+    return in.confinement && in.confinement->on_sides() ? 1.0 / (1.0 - most_shortening) : 1.0;
+  }
   /// The final stage, once it is hard.
   [[nodiscard]] Stage last() const noexcept { return {time_step, in.particles.youngs_modulus}; }
 };
