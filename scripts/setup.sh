@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing; says nothing and takes no time when none is.
-# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers] [--report] [--fuzz] [--valgrind]
+# usage: scripts/setup.sh [--plots] [--render] [--site] [--checks] [--peers] [--readers] [--report] [--notebooks] [--fuzz] [--valgrind]
 #   --plots   also h5py and matplotlib, for the scripts that read packs
 #   --peers   also LAMMPS and LIGGGHTS, to compare with
 #   --readers also LAMMPS, LIGGGHTS, YADE and VTK, which read packs that were converted for them
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
 #   --report  also what --render brings, and Chromium, in which the test of packmpi report reads its page
+#   --notebooks also what runs Jupyter's notebooks, of doc/notebooks
 #   --site    also MkDocs, for the documentation as a site
 #   --checks  also clang-tidy and clang-format, for scripts/dev/check.sh
 #   --fuzz    also clang with libFuzzer, for scripts/dev/fuzz.sh
@@ -22,11 +23,12 @@ for option in "$@"; do
     --readers) packages+=(python3 python3-h5py python3-vtk9 lammps liggghts yade) ;;
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
     --report) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth chromium fonts-dejavu-core) ;;
+    --notebooks) packages+=(python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib) ;;
     --site) packages+=(mkdocs mkdocs-material) ;;
     --checks) packages+=(clang clang-tidy clang-format python3) ;;
     --fuzz) packages+=(clang libclang-rt-14-dev llvm) ;;
     --valgrind) packages+=(valgrind) ;;
-    *) sed -n '2,12s/^# //p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,13s/^# //p' "$0" >&2; exit 2 ;;
   esac
 done
 

@@ -1,6 +1,10 @@
 """In plain Python, in the folder where the program has made bed.hdf of bed.toml: arrays, errors, files, ensembles, time."""
+import contextlib
 import gc
+import io
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -159,6 +163,25 @@ class Files(unittest.TestCase):
         self.assertEqual(raised.exception.code, 75)
         pack = packmpi.run("bed.toml", folder="cut", restart="auto")
         np.testing.assert_array_equal(pack.position, packmpi.read("bed.hdf").position)
+
+
+class Page(unittest.TestCase):
+    def test_runs_as_it_stands(self):
+        """doc/python.md from top to bottom, its first scene made small."""
+        root = Path(__file__).resolve().parents[2]
+        blocks = re.findall(r"^```python\n(.*?)^```$", (root / "doc" / "python.md").read_text(), re.MULTILINE | re.DOTALL)
+        self.assertGreater(len(blocks), 4)
+        blocks[0] = blocks[0].replace('packmpi.run("input/quickstart.toml")',
+                                      'packmpi.run(packmpi.scene("input/quickstart.toml", set={"container.size": [0.3, 0.3, 0.2]}))')
+        place, names = Path("page"), {}
+        shutil.rmtree(place, ignore_errors=True)
+        place.mkdir()
+        (place / "input").symlink_to(root / "input")
+        with contextlib.chdir(place), contextlib.redirect_stdout(io.StringIO()) as said:
+            for block in blocks:
+                exec(compile(block, "doc/python.md", "exec"), names)   # pylint: disable=exec-used
+        self.assertIn('container.siez 3 scene.toml:3: container.siez: unknown key; did you mean "size"?', said.getvalue())
+        self.assertEqual(names["again"].phi_bulk, names["pack"].phi_bulk)
 
 
 class Manners(unittest.TestCase):
