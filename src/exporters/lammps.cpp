@@ -4,6 +4,8 @@
 #include <numbers>
 #include <optional>
 
+#include "confine/servo.hpp"
+#include "confine/stress.hpp"
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
 #include "exporters/quote.hpp"
@@ -52,6 +54,17 @@ std::string contact(const Specimen& s, double share, double friction) {
                      friction_words(s, share, friction), in.contact.tension_cutoff ? " limit_damping" : "");
 }
 
+/// A floor; over it a lid, which moves by the variable `lid` [m].
+std::string floor_and_lid(const Specimen& s, const std::string& law) {
+  const char up = "xyz"[s.vertical()];
+  std::string text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
+  const std::optional<double>& lid = s.scene.container.lid;
+  if (!lid) return text;
+  text += s.flat() ? fmt::format("region          lid plane 0 {} 0 0 -1 0 move NULL v_lid NULL\n", *lid)
+                   : fmt::format("region          lid plane 0 0 {} 0 0 -1 move NULL NULL v_lid\n", *lid);
+  return text + fmt::format("fix             lid all wall/gran/region granular {} region lid\n", law);
+}
+
 std::string walls(const Specimen& s) {
   const input::Input& in = s.scene.in;
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
@@ -62,10 +75,62 @@ std::string walls(const Specimen& s) {
     text += fmt::format("fix             wall_{0} all wall/gran granular {1} {0}plane 0 {2}\n", "xyz"[axis], law,
                         s.size[axis]);
   }
-  const std::optional<double>& lid = s.scene.container.lid;
-  if (lid) text += fmt::format("# the lid stands still where packmpi left it, at {} m\n", *lid);
-  return text + fmt::format("fix             floor all wall/gran granular {} {}plane 0 {}\n", law, "xyz"[s.vertical()],
-                            lid ? fmt::format("{}", *lid) : "NULL");
+  return text + floor_and_lid(s, law);
+}
+
+/// Under a lid: the stress of the contacts between particles, axis by axis; LAMMPS' box is higher than the lid.
+std::string stress_measures(const Specimen& s) {
+  if (!s.scene.container.lid) return "";
+  const char up = "xyz"[s.vertical()];
+  std::string text =
+      fmt::format("compute         pairs all pressure NULL pair\nvariable        higher equal ({0}hi-{0}lo)/{1}\n", up,
+                  *s.scene.container.lid);
+  for (std::size_t axis = 0; axis <= s.vertical(); ++axis) {
+    text += fmt::format("variable        stress_{} equal c_pairs[{}]*v_higher\n", "xyz"[axis], axis + 1);
+  }
+  return text;
+}
+std::string stress_columns(const Specimen& s) {
+  std::string text;
+  for (std::size_t axis = 0; s.scene.container.lid && axis <= s.vertical(); ++axis) {
+    text += fmt::format(" v_stress_{}", "xyz"[axis]);
+  }
+  return text;
+}
+
+/// Servos that keep the stress of step 0, and a while in which springs that a pack does not carry over come back.
+std::string servos(const Specimen& s) {
+  if (!s.scene.container.lid) return "";
+  const double mass = s.volume * s.scene.in.particles.density / (s.copies[0] * s.copies[1]);
+  const double sheet = confine::thickness(s.scene);  // in the plane LAMMPS has forces over lengths
+  const double modulus = sheet * confine::gains_of(s.scene, *s.scene.container.lid, mass).modulus;
+  const char up = "xyz"[s.vertical()];
+  std::string text = fmt::format(
+      "# under stress: lid and periods follow servos that keep it. Springs of friction are not in the file; friction "
+      "is\n"
+      "# ten times its own for the first steps, in which they come back, and no contact slides meanwhile.\n"
+      "variable        excess equal v_stress_{0}-$(v_stress_{0})\n"
+      "fix             sum all ave/time 1 1 1 v_excess ave running\n"
+      "variable        lid equal f_sum*step*{1}/(200*{2})\n",
+      up, *s.scene.container.lid, modulus);
+  std::string press;
+  for (std::size_t axis = 0; s.scene.in.confinement->on_sides() && axis < s.vertical(); ++axis) {
+    if (!s.periodic(axis)) continue;
+    press += fmt::format(" {0} $(v_stress_{0}/v_higher) $(v_stress_{0}/v_higher) $(200*dt)", "xyz"[axis]);
+  }
+  if (press.empty()) return text;
+  return text +
+         fmt::format("fix             sides all press/berendsen{} modulus {}\nfix_modify      sides press pairs\n",
+                     press, modulus);
+}
+std::string hold(const Specimen& s) {
+  if (!s.scene.container.lid) return "";
+  constexpr double rougher = 10.0;
+  const double friction = s.scene.in.contact.friction;
+  return fmt::format(
+      "variable        holding index 4000\npair_coeff      * * {}\nrun             ${{holding}}\npair_coeff      * * "
+      "{}\n",
+      contact(s, 0.5, rougher * friction), contact(s, 0.5, friction));
 }
 
 std::string drag(const Specimen& s) {
@@ -107,13 +172,15 @@ std::string in_file(const Specimen& s) {
       "compute         strongest all reduce max c_contact\n"
       "variable        volume_now equal c_volume\n"
       "variable        force_now equal c_strongest\n"
-      "thermo_style    custom step atoms ke c_volume c_strongest\n"
+      "{4}thermo_style    custom step atoms ke c_volume c_strongest{5}\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
       "run             0\n{1}\n"
       "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
       "anew before another one\n"
-      "{2}{3}run             ${{steps}}\n{1}",
-      s.scene.time_step, report, walls(s), s.flat() ? "fix             plane all enforce2d\n" : "");
+      "{6}{2}{3}{7}run             ${{steps}}\n{1}",
+      s.scene.container.lid ? s.scene.confining_step : s.scene.time_step, report, walls(s),
+      s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
+      hold(s));
   return text;
 }
 
