@@ -16,6 +16,12 @@ if(IS_SYMLINK ${PROJECT_BINARY_DIR}/python)   # as it was before there was a com
   file(REMOVE ${PROJECT_BINARY_DIR}/python)
 endif()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/python/packmpi)
+file(GLOB links ${PROJECT_BINARY_DIR}/python/packmpi/*)
+foreach(link IN LISTS links)
+  if(IS_SYMLINK ${link})   # the source may be gone
+    file(REMOVE ${link})
+  endif()
+endforeach()
 file(GLOB package CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/python/packmpi/*)
 foreach(file IN LISTS package)
   get_filename_component(name ${file} NAME)

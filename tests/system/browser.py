@@ -11,7 +11,7 @@ import time
 
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-dev-shm-usage", "--no-first-run",
          "--no-default-browser-check", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-         "--disable-default-apps", "--disable-extensions", "--mute-audio", "--hide-scrollbars"]
+         "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-default-apps", "--disable-extensions", "--mute-audio", "--hide-scrollbars"]
 
 
 def program():

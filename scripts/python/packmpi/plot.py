@@ -137,7 +137,70 @@ def settling(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
     return figure
 
 
-PLOTS = {"density": density, "sizes": sizes, "pairs": pairs, "settling": settling}
+def coordination(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
+    """Shares of particles by the number of those they touch; None if nothing touches."""
+    shares = np.bincount(pack.contacts) / pack.count
+    if len(shares) < 2:
+        return None
+    figure, axes = new_figure()
+    last = max(int(np.flatnonzero(shares > 1e-3)[-1]), 1)   # of a few large ones among fines the tail is long
+    axes.bar(np.arange(last + 1), 100.0 * shares[:last + 1], color=ACHIEVED, width=0.8)
+    mean = float(np.mean(pack.contacts))
+    axes.axvline(mean, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    axes.annotate(f"mean {mean:.2f}", (mean, 1.0), (4, -4), xycoords=("data", "axes fraction"), textcoords="offset points", va="top", fontsize=9)
+    axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+    axes.set(xlabel="touching particles", ylabel="particles [%]")
+    axes.grid(axis="x", visible=False)
+    return figure
+
+
+FEW = 50   # contacts, of which no distribution is drawn
+
+
+def forces(_: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Probability density of the normal forces over their mean; None if contacts are few."""
+    told = analysis["forces"]
+    if told["contacts"] < FEW:
+        return None
+    edges, values = staircase(told["distribution"])
+    density = values / (values.sum() * told["distribution"]["width"])
+    last = int(np.flatnonzero(density)[-1]) + 1
+    figure, axes = new_figure()
+    axes.stairs(np.where(density > 0.0, density, np.nan)[:last], edges[:last + 1], color=ACHIEVED, linewidth=1.5, baseline=None)
+    axes.set(yscale="log", xlabel="normal force over its mean", ylabel="probability density", xlim=(0.0, edges[last]))
+    return figure
+
+
+def rose(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
+    """Density of contact directions over the angle from the vertical, both ends of each contact; None without contacts."""
+    normals = pack.pair_contacts.get("normal")
+    if normals is None or len(normals) < FEW:
+        return None
+    vertical = normals[:, pack.dimension - 1]
+    petals = 24
+    edges = np.linspace(-np.pi, np.pi, petals + 1)
+    if pack.dimension == 2:
+        angle = np.arctan2(normals[:, 0], vertical)
+        counts = np.histogram(np.concatenate([angle, np.where(angle > 0.0, angle - np.pi, angle + np.pi)]), edges)[0].astype(float)
+        density = counts / counts.mean()
+    else:   # by |cos|: the solid angle of a ring is the difference of its cosines; drawn on all four quarters
+        quarter = np.linspace(0.0, 0.5 * np.pi, petals // 4 + 1)
+        counts = np.histogram(np.arccos(np.clip(np.abs(vertical), 0.0, 1.0)), quarter)[0] / len(vertical)
+        ring = counts / -np.diff(np.cos(quarter))
+        density = np.concatenate([ring, ring[::-1], ring, ring[::-1]])
+    figure, axes = plt.subplots(figsize=(4.7, 3.4), layout="constrained", subplot_kw={"projection": "polar"})
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(-1)
+    axes.bar(0.5 * (edges[1:] + edges[:-1]), density, width=2.0 * np.pi / petals, color=ACHIEVED, edgecolor=BACKGROUND, linewidth=0.5)
+    axes.plot(np.linspace(0.0, 2.0 * np.pi, 181), np.ones(181), color=TARGET, linewidth=1.2, linestyle=(0, (4, 3)))
+    axes.set_xticks(np.radians([0, 90, 180, 270]), ["up", "", "down", ""])
+    axes.set_yticks([1.0], [""])
+    axes.spines["polar"].set_visible(False)
+    return figure
+
+
+PLOTS = {"density": density, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
+         "settling": settling}
 
 
 def draw(name: str, pack: Pack, analysis: dict[str, Any], path: Union[str, Path]) -> bool:

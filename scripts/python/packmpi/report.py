@@ -2,7 +2,7 @@
 
 usage: packmpi report PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
 
-Facts, pictures, plots, targets beside what was achieved, protocol, checks and provenance. A picture that cannot be drawn is left
+Facts, a view to turn and cut, pictures, plots, targets beside what was achieved, protocol, checks and provenance. A picture that cannot be drawn is left
 out, and the page says why. The numbers are those of the pack and of `packmpi analyze`; the history is NAME.steps.csv.
 """
 import argparse
@@ -20,6 +20,7 @@ from .pack import Pack
 from .render import container_size, pictures_of
 from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
 from .units import length_unit
+from .view import script_source, view
 
 STYLE = Path(__file__).parent / "report.css"
 # What a plot's colours become on a dark page.
@@ -90,7 +91,8 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
     """The few numbers everybody looks for, large."""
     made = pack.summary
     tiles = [(number(pack.count), pack.noun), (f"{pack.phi_bulk:.4f}", "solid fraction of the bulk"),
-             (f"{pack.porosity_bulk:.4f}", "porosity of the bulk"),
+             (f"{pack.porosity_bulk:.4f}", "porosity n of the bulk"),
+             (number(pack.void_ratio_bulk if pack.phi_bulk else None), "void ratio e of the bulk"),
              (f"{made['coordination']:.2f}", "coordination number"),
              (length(made["height"]), f"high; target {length(pack.size[-1])}"),
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
@@ -130,11 +132,16 @@ CAPTIONS = {
     "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
     "sizes": "Target sizes (dashed) and achieved ones, as sieves would show them.",
     "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
+    "coordination": "How many others a particle touches; walls are not counted.",
+    "forces": "Contact forces over their mean. Straight on this axis: an exponential, as in beds at rest.",
+    "rose": "Where contacts point to: from the vertical, upward, weighed by the solid angle; a circle if all directions are alike.",
     "settling": "How the layers settled; energies are those of the particles that move."}
 
 MISSING = {
     "density": "No density profile.", "sizes": "All radii are equal: no size curves.",
     "pairs": "The pack is too small for a pair distribution.",
+    "coordination": "No particle touches another.", "forces": "Too few contacts for a distribution of forces.",
+    "rose": "No contact orientations: the pack was written without output.contacts = true, or has too few contacts.",
     "settling": "No history: the time series NAME.steps.csv is not beside the pack."}
 
 
@@ -297,7 +304,7 @@ def page(pack: Pack, analysis: dict[str, Any], pixels: int) -> str:
         body = [
             f"<header><h1>{html.escape(pack.name)}</h1><p>{number(pack.count)} {pack.noun} in {container}, "
             f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
-            warning(pack), facts(pack, analysis), pictures(pack, folder, pixels),
+            warning(pack), facts(pack, analysis), view(pack), pictures(pack, folder, pixels),
             section("plots", "What it is like", plots(pack, analysis, folder)),
             section("targets", "Target and achieved", comparison(pack, analysis),
                     '<p class="note">φ is the solid fraction: a product of the protocol below, not a constant of the material. The Kolmogorov distance is the largest one between the target and the achieved curve.</p>'),
@@ -309,7 +316,7 @@ def page(pack: Pack, analysis: dict[str, Any], pixels: int) -> str:
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src {script_source()}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <link rel="icon" href="data:,">
