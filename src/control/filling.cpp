@@ -137,12 +137,18 @@ Slab buried(double surface, double mean_diameter) {
   return {low, high, (high - low) / (high - low + half_believed * mean_diameter)};
 }
 
-void correct(Filling& filling, double surface, const Slab& slab, double measured) {
+Knob next_knob(const Filling& filling, const Squeeze& squeeze) {
+  return knob_for(filling, filling.target - filling.bias - (squeeze.next - squeeze.sample));
+}
+
+void correct(Filling& filling, double surface, const Slab& slab, double measured, const Squeeze& squeeze) {
   filling.layer_surfaces.push_back(surface);
   filling.layer_fractions.push_back(measured);
-  if (!(slab.depth() > 0.0) || filling.knobs.empty()) return;
-  filling.bias = slab.weight * (measured - foreseen(filling, slab));
-  filling.knob = knob_for(filling, filling.target - filling.bias);
+  if (filling.knobs.empty()) return;
+  if (slab.depth() > 0.0) {
+    filling.bias = slab.weight * (measured - foreseen(filling, slab) - (squeeze.now - squeeze.sample));
+  }
+  filling.knob = next_knob(filling, squeeze);
 }
 
 }  // namespace packmpi::control

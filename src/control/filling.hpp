@@ -46,6 +46,13 @@ struct Slab {
   [[nodiscard]] double depth() const noexcept { return high - low; }
 };
 
+/// What weight adds to the solid fraction of a bed by pressing its particles into each other.
+struct Squeeze {
+  double sample = 0.0;  ///< in the bulk of the sample, on the mean
+  double now = 0.0;     ///< in the slab that is measured
+  double next = 0.0;    ///< in the end, in the layer that is filled in next
+};
+
 /// The friction that a knob stands for. Local, pure; same bits on any machine.
 [[nodiscard]] scene::Friction friction_of(const input::Input& in, Knob knob);
 /// The largest knob of a scene: 2 if rolling may grow, else 1. Local.
@@ -68,7 +75,10 @@ struct Slab {
 /// the floor. No depth: the bed is too low yet. Local.
 [[nodiscard]] Slab buried(double surface, double mean_diameter);
 /// After a layer has settled: what its slab measured, beside what the curve foresees of the knobs its parts were filled
-/// in with, corrects the next knob. A slab of no depth changes nothing, nor does anything without a curve. Local.
-void correct(Filling& filling, double surface, const Slab& slab, double measured);
+/// in with and of the weight above it, corrects the next knob. A slab of no depth gives no correction but for the
+/// weight; without a curve nothing changes. Local.
+void correct(Filling& filling, double surface, const Slab& slab, double measured, const Squeeze& squeeze);
+/// The knob of the next layer. Local.
+[[nodiscard]] Knob next_knob(const Filling& filling, const Squeeze& squeeze);
 
 }  // namespace packmpi::control

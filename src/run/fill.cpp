@@ -7,6 +7,7 @@
 #include "observe/measure.hpp"
 #include "report/judge.hpp"
 #include "rsa/insert.hpp"
+#include "run/sample.hpp"
 #include "run/settle.hpp"
 #include "run/start.hpp"
 #include "scene/expectation.hpp"
@@ -65,7 +66,8 @@ void measure_layer(Bed& bed) {
 void measure_filling(Bed& bed, Attendant& attendant) {
   const double surface = bed.surface();
   const control::Slab slab = control::buried(surface, 2.0 * bed.scene.sizes.mean());
-  control::correct(bed.progress.filling, surface, slab, slab.depth() > 0.0 ? bed.fraction_of(slab) : 0.0);
+  control::correct(bed.progress.filling, surface, slab, slab.depth() > 0.0 ? bed.fraction_of(slab) : 0.0,
+                   squeeze_of(bed.scene, surface, slab));
   attendant.layer_measured(bed.progress.filling);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
 #include "run/bed.hpp"
@@ -21,6 +22,12 @@ constexpr double least_layers = 2.0;
 double mean_volume(const scene::Scene& scene) {
   const int dimension = scene.container.dimension;
   return geometry::volume(dimension, 1.0) * scene.sizes.curve().moment(dimension);
+}
+
+// [m] of a particle of mean volume.
+double mean_diameter(const scene::Scene& scene) {
+  const double moment = scene.sizes.curve().moment(scene.container.dimension);
+  return 2.0 * (scene.container.dimension == 3 ? elementary::cube_root(moment) : std::sqrt(moment));
 }
 
 double particles_in(const scene::Scene& scene) {
@@ -46,15 +53,15 @@ void draw_from_list(input::Radius& radius) {
 input::Input smaller(const scene::Scene& scene) {
   const double volume = mean_volume(scene);
   const int dimension = scene.container.dimension;
-  const double mean_diameter = 2.0 * std::pow(scene.sizes.curve().moment(dimension), 1.0 / dimension);
+  const double diameter = mean_diameter(scene);
   input::Input in = scene.in;
   in.particles.count = 0;  // as high as a sample is
   if (in.particles.radius.distribution == input::SizeDistribution::list) draw_from_list(in.particles.radius);
-  in.container.size.back() = sample_height(scene, mean_diameter);
+  in.container.size.back() = sample_height(scene, diameter);
   const double area =
       sample_particles * volume / (scene::expected_fraction(scene).value * in.container.size.back());  // 2D: a length
   const double side = std::max(
-      {dimension == 3 ? std::sqrt(area) : area, side_in_mean * mean_diameter, side_in_columns * scene.column_width()});
+      {dimension == 3 ? std::sqrt(area) : area, side_in_mean * diameter, side_in_columns * scene.column_width()});
   for (std::size_t axis = 0; axis < in.container.boundary.size(); ++axis) {
     if (!(side < in.container.size[axis])) continue;
     in.container.size[axis] = side;
@@ -95,6 +102,19 @@ Sample sample_of(const scene::Scene& scene) {
   sample.scale = wall_scale(scene, sample.scene);
   sample.particles = particles_in(sample.scene);
   return sample;
+}
+
+control::Squeeze squeeze_of(const scene::Scene& scene, double surface, const control::Slab& slab) {
+  // Particles nearer by half an overlap each: a strain along each axis.
+  const double axes = scene.container.dimension;
+  const double per_overlap = 0.5 * axes * scene::expected_fraction(scene).value;
+  const auto gain = [&](double pressing) {
+    return per_overlap * scene::overlap_below(scene, std::max(pressing, 0.0), scene.in.particles.youngs_modulus);
+  };
+  const double sample = sample_height(scene, mean_diameter(scene));  // without walls
+  return {.sample = gain(0.5 * sample),
+          .now = gain(scene::pressing_depth(scene, surface - 0.5 * (slab.low + slab.high))),
+          .next = gain(scene::pressing_depth(scene, scene::finished_height(scene) - surface))};
 }
 
 control::Trial try_knob(const Sample& sample, control::Knob knob) {

@@ -161,7 +161,7 @@ control::Filling find_filling(const comm::Comm& comm, const scene::Scene& scene)
   if (!sample.whole) filling = control::curve_of(trials);
   filling.on = true;
   filling.target = wanted;
-  filling.knob = sample.whole ? best_of(trials, wanted).knob : control::knob_for(filling, wanted);
+  filling.knob = sample.whole ? best_of(trials, wanted).knob : control::next_knob(filling, squeeze_of(scene, 0.0, {}));
   return filling;
 }
 

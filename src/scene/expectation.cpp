@@ -87,22 +87,6 @@ double uneven_volumes(const Scene& scene) {
   return scene.sizes.curve().moment(2 * scene.container.dimension) / (mean * mean);
 }
 
-// How deep a pile without walls presses as much on its floor as this one does (Janssen 1895): lateral over vertical
-// stress times wall friction, on the walls there are.
-double pressing_height(const Scene& scene) {
-  constexpr double lateral = 0.5;  // share of the vertical stress
-  double walls_over_area = 0.0;    // [1/m]
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
-    if (!scene.container.periodic[axis]) walls_over_area += 2.0 / scene.container.size[axis];
-  }
-  const double rise = rise_of_layer(scene, expected_fraction(scene).value);
-  const double most = static_cast<double>(most_layers(scene)) * rise;
-  const double height = scene.in.particles.count > 0 ? expected_filling(scene, expected_fraction(scene).value).height
-                                                     : std::min(scene.container.height(), most);
-  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
-  return rate * height > 1e-6 ? -std::expm1(-rate * height) / rate : height;
-}
-
 }  // namespace
 
 BedFraction expected_fraction(const Scene& scene) {
@@ -189,17 +173,39 @@ Filling expected_filling(const Scene& scene, double fraction) {
   return filling;
 }
 
-double expected_overlap(const Scene& scene, double youngs_modulus) {
+double finished_height(const Scene& scene) {
+  const double rise = rise_of_layer(scene, expected_fraction(scene).value);
+  const double most = static_cast<double>(most_layers(scene)) * rise;
+  return scene.in.particles.count > 0 ? expected_filling(scene, expected_fraction(scene).value).height
+                                      : std::min(scene.container.height(), most);
+}
+
+double pressing_depth(const Scene& scene, double depth) {
+  constexpr double lateral = 0.5;  // share of the vertical stress
+  double walls_over_area = 0.0;    // [1/m]
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    if (!scene.container.periodic[axis]) walls_over_area += 2.0 / scene.container.size[axis];
+  }
+  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
+  return rate * depth > 1e-6 ? (1.0 - elementary::exponential(-rate * depth)) / rate : depth;
+}
+
+double overlap_below(const Scene& scene, double pressing, double youngs_modulus) {
   // A contact bears sigma 4 pi r^2 / (phi Z) in space, of Z contacts a particle; in the plane sigma 2 pi r / (phi Z).
-  constexpr double contacts = 5.0, mean_over_depth = 0.6;
+  constexpr double contacts = 5.0;
   constexpr double uneven = 0.9;  // mean of f^(2/3) over that of the mean force, where forces are as uneven as in packs
   const bool flat = scene.container.dimension == 2;
-  const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing_height(scene);
+  const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing;
   if (!(stress > 0.0)) return 0.0;
   const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
                          (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);
   const double root = elementary::cube_root(squeeze);
-  return uneven * mean_over_depth * root * root;
+  return uneven * root * root;
+}
+
+double expected_overlap(const Scene& scene, double youngs_modulus) {
+  constexpr double mean_over_depth = 0.6;
+  return mean_over_depth * overlap_below(scene, pressing_depth(scene, finished_height(scene)), youngs_modulus);
 }
 
 double modulus_for(const Scene& scene, double overlap, double youngs_modulus) {

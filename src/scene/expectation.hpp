@@ -55,6 +55,17 @@ struct Filling {
 /// the diameter that no layer fits into any more.
 [[nodiscard]] double height_below(const Scene& scene, double target);
 
+/// [m] of the bed when it is finished: H_d, or what the count or layers.maximum come to. Local, pure.
+[[nodiscard]] double finished_height(const Scene& scene);
+
+/// How deep a pile without walls presses as much as this one does at `depth` [m] below its surface (Janssen 1895): side
+/// walls bear the rest. Same bits on any machine.
+[[nodiscard]] double pressing_depth(const Scene& scene, double depth);
+
+/// Mean overlap of touching particles over their radius where a pile without walls is so deep [m], at this modulus
+/// [Pa]. 0 without gravity. Same bits on any machine.
+[[nodiscard]] double overlap_below(const Scene& scene, double pressing, double youngs_modulus);
+
 /// Mean overlap of touching particles over their radius in a bed of the scene's height that rests under its weight, at
 /// this modulus [Pa]: Hertz contacts under the mean force that bears what is above, depth by depth; side walls bear
 /// what Janssen's formula gives them. Within a fifth of what packs come to (doc/theory.md, "Rest"). 0 without gravity.

@@ -123,12 +123,30 @@ double filled_in(double more, double target) {
       const double part = std::min(low + rise, slab.high) - std::max(low, slab.low);
       if (part > 0.0) sum += part * layers[k];
     }
-    correct(filling, surface, slab, slab.depth() > 0.0 ? sum / slab.depth() : 0.0);
+    correct(filling, surface, slab, slab.depth() > 0.0 ? sum / slab.depth() : 0.0, {});
   }
   EXPECT_EQ(filling.layer_fractions.size(), 40U);
   double sum = 0.0;
   for (std::size_t k = 16; k < 36; ++k) sum += layers[k];
   return sum / 20.0;
+}
+
+// The layer below is pressed more: it is filled in looser by what will be gained, and a bed that has gained already is
+// not taken for one that differs from its sample.
+TEST(Filling, WhatWeightWillAddIsForeseen) {
+  Filling filling = curve_of(trials);
+  filling.on = true;
+  filling.target = 0.60;
+  const Knob alone = next_knob(filling, {});
+  EXPECT_EQ(next_knob(filling, {.sample = 0.001, .now = 0.0, .next = 0.001}), alone);
+  const Knob deep = next_knob(filling, {.sample = 0.001, .now = 0.0, .next = 0.004});
+  EXPECT_NEAR(deep, knob_for(filling, 0.597), 1e-15);
+  EXPECT_GT(deep, alone);
+  filling.layer_knobs = {alone};
+  const Slab slab{2.0, 12.0, 1.0};
+  correct(filling, 15.0, slab, filled_at(filling, alone) + 0.002, {.sample = 0.001, .now = 0.003, .next = 0.001});
+  EXPECT_NEAR(filling.bias, 0.0, 1e-15);
+  EXPECT_NEAR(filling.knob, alone, 1e-12);
 }
 
 TEST(Filling, LayersCorrectWhatTheSampleDoesNotKnow) {
