@@ -62,6 +62,20 @@ std::int64_t side_tick(const scene::Scene& scene, const Gains& gains) {
   return static_cast<std::int64_t>(std::clamp(std::floor(share * across / scene.confining_step), least, most));
 }
 
+std::int64_t expected_steps(const scene::Scene& scene, double height, double mass) {
+  if (!scene.in.confinement) return 0;
+  // Over the rough surface, and what beds were strained by; then crossings (doc/howto_confinement.md has figures).
+  constexpr double roughness = 1.2, vertical_strain = 0.01, lateral_strain = 0.012, crossings = 30.0;
+  const Gains gains = gains_of(scene, height, mass);
+  double way = roughness * 2.0 * scene.sizes.mean() + vertical_strain * height;
+  if (scene.in.confinement->on_sides()) {
+    for (int a = 0; a < scene.container.lateral_axes(); ++a) {
+      way = std::max(way, lateral_strain * scene.in.container.size[static_cast<std::size_t>(a)]);
+    }
+  }
+  return std::llround((way / gains.closing + crossings * gains.crossing) / scene.confining_step);
+}
+
 double lid_mass(const scene::Scene& scene, const Gains& gains) { return gains.density * 2.0 * scene.sizes.largest(); }
 
 double side_mass(const scene::Scene& scene, const Gains& gains, std::size_t axis) {

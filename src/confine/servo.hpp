@@ -26,6 +26,10 @@ struct Gains {
 [[nodiscard]] std::int64_t lid_tick(const scene::Scene& scene, const Gains& gains);
 [[nodiscard]] std::int64_t side_tick(const scene::Scene& scene, const Gains& gains);
 
+/// Steps that a bed of that height [m] and mass [kg] takes, about: the lid comes down and presses at its closing speed,
+/// and waves die away. 0 without [confinement]. Local.
+[[nodiscard]] std::int64_t expected_steps(const scene::Scene& scene, double height, double mass);
+
 /// Areal mass [kg/m2] of the plate: of the lid that of a layer of particles under it; of a periodic axis a quarter of
 /// the bed's, so that box and bed swing together, critically damped.
 [[nodiscard]] double lid_mass(const scene::Scene& scene, const Gains& gains);

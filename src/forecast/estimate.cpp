@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "confine/servo.hpp"
 #include "forecast/probe.hpp"
 #include "geometry/volume.hpp"
 #include "pack/checkpoint.hpp"
@@ -300,6 +301,11 @@ void add_steps(const scene::Scene& scene, report::Estimate& e) {
   e.duration = static_cast<double>(e.layers.value * layer) * scene.settling.time_step +
                static_cast<double>(e.relaxation_steps) * scene.time_step;
   e.particle_steps = particle_steps_of(scene, e.layers.value, e.a_layer);
+  const double each = scene.in.particles.density * geometry::volume(3, 1.0) * scene.sizes.curve().moment(3);
+  e.confinement_steps = confine::expected_steps(scene, e.height, each * static_cast<double>(e.particles.value));
+  e.steps += e.confinement_steps;
+  e.duration += static_cast<double>(e.confinement_steps) * scene.confining_step;
+  e.particle_steps += e.confinement_steps * e.particles.value;
   e.at_most = scene.in.dynamics.stop == input::StopRule::settled;
 }
 

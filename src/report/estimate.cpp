@@ -55,6 +55,7 @@ std::string to_json(const Estimate& e) {
   root["height"] = e.height;
   root["steps"] = e.steps;
   root["relaxation_steps"] = e.relaxation_steps;
+  if (e.confinement_steps > 0) root["confinement_steps"] = e.confinement_steps;
   root["particle_steps"] = e.particle_steps;
   root["duration"] = e.duration;
   root["at_most"] = e.at_most;
@@ -106,6 +107,7 @@ std::string to_table(const Estimate& e) {
   line("layers", fmt::format("{}, of {} particles {}", range(e.layers), e.a_layer, whole ? "each" : "at most"));
   line("height of the bed [m]", fmt::format("{:.4g}", e.height));
   line("time steps", fmt::format("{}{}, {} of them in the final stage", e.steps, most, e.relaxation_steps));
+  if (e.confinement_steps > 0) line("time steps of confinement, about", fmt::format("{}", e.confinement_steps));
   line("simulated time [s]", fmt::format("{:.4g}{}", e.duration, most));
   line("particle-steps", fmt::format("{:.3g}{}", static_cast<double>(e.particle_steps), most));
   line("most ranks the columns allow", fmt::format("{}", e.most_ranks));

@@ -43,18 +43,19 @@ struct Estimate {
   double height = 0.0;     ///< [m] of the bed
   std::int64_t steps = 0;  ///< of time, relaxation included
   std::int64_t relaxation_steps = 0;
-  std::int64_t particle_steps = 0;    ///< sum over the steps of the particles that move
-  double duration = 0.0;              ///< [s] simulated
-  bool at_most = false;               ///< stop = "settled" may take fewer steps
-  int ranks = 1;                      ///< asked
-  std::int64_t most_ranks = 1;        ///< that the columns allow
-  double ghosts = 0.0;                ///< copies of other ranks' particles a rank holds, by its own
-  std::int64_t settling_bytes = 0;    ///< memory of a rank while layers settle
-  std::int64_t writing_bytes = 0;     ///< the same while a pack or a checkpoint is written
-  std::int64_t pack_bytes = 0;        ///< NAME.hdf
-  std::int64_t checkpoint_bytes = 0;  ///< each of two
-  std::int64_t step_log_bytes = 0;    ///< NAME.steps.csv, about
-  std::optional<SearchCost> search;   ///< of a target
+  std::int64_t confinement_steps = 0;  ///< about, part of steps; 0 without
+  std::int64_t particle_steps = 0;     ///< sum over the steps of the particles that move
+  double duration = 0.0;               ///< [s] simulated
+  bool at_most = false;                ///< stop = "settled" may take fewer steps
+  int ranks = 1;                       ///< asked
+  std::int64_t most_ranks = 1;         ///< that the columns allow
+  double ghosts = 0.0;                 ///< copies of other ranks' particles a rank holds, by its own
+  std::int64_t settling_bytes = 0;     ///< memory of a rank while layers settle
+  std::int64_t writing_bytes = 0;      ///< the same while a pack or a checkpoint is written
+  std::int64_t pack_bytes = 0;         ///< NAME.hdf
+  std::int64_t checkpoint_bytes = 0;   ///< each of two
+  std::int64_t step_log_bytes = 0;     ///< NAME.steps.csv, about
+  std::optional<SearchCost> search;    ///< of a target
   std::optional<Probe> probe;
   double seconds = 0.0;  ///< [s] wall time of the run; 0 without a probe
 };

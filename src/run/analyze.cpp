@@ -18,12 +18,14 @@ constexpr double range_in_diameters = 2.5;
 constexpr double shell_in_largest = 1.25;  // largest diameters: the first shell of the largest ones
 
 // The scene with near pairs out to the analysis' range: a near field that is never evaluated.
-scene::Scene reaching_scene(const std::string& text, const std::string& path, double& range) {
-  scene::Scene scene = scene::build(input::parse(text, path, {}));
+scene::Scene reaching_scene(const pack::PackSlice& slice, const std::string& path, double& range) {
+  scene::Scene scene = scene::build(input::parse(slice.scene, path, {}));
+  confine::apply(slice.confined, scene.container);
   range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), shell_in_largest * 2.0 * scene.sizes.largest());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     // A periodic axis takes three interaction ranges.
-    if (scene.container.periodic[axis]) range = std::min(range, scene.container.size[axis] / 3.001 - scene.skin);
+    if (scene.container.periodic[axis])
+      range = std::min(range, scene.container.size[axis] / (3.001 * scene.room()) - scene.skin);
   }
   scene.in.near_field = input::NearField{.alpha1 = 0.0, .beta1 = 0.0, .alpha2 = 0.0, .beta2 = 0.0, .cutoff = range};
   scene.reach = std::max(2.0 * scene.sizes.largest(), range);
@@ -59,7 +61,7 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
   scene::Scene scene;
   comm::agree_on(comm, [&] {
     slice = pack::read_slice(path, comm.rank(), comm.size());
-    scene = reaching_scene(slice.scene, path, range);
+    scene = reaching_scene(slice, path, range);
     try {
       pack::check_in_scene(slice.rows, scene);
     } catch (const Error& error) {

@@ -46,6 +46,16 @@ void check_container(const scene::Scene& scene, const input::Input& source) {
   }
 }
 
+// Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
+void check_sides(const scene::Scene& scene, const confine::State& source) {
+  for (std::size_t a = 0; source.on && a < static_cast<std::size_t>(scene.container.lateral_axes()); ++a) {
+    if (source.size[a] == scene.container.size[a]) continue;
+    refuse(scene,
+           "start.pack: its sides were moved by [confinement], and a scene has them where container.size says; go "
+           "on from a pack that was made without lateral and isotropic");
+  }
+}
+
 void check_radii(const scene::Scene& scene, double smallest, double largest) {
   if (smallest >= scene.sizes.smallest() && largest <= scene.sizes.largest()) return;
   refuse(scene, fmt::format("start.pack: its radii are {:g} to {:g} m, those of the scene {:g} to {:g} m; give "
@@ -169,6 +179,7 @@ void take_over(Bed& bed) {
     slice = pack::read_slice(path, bed.comm.rank(), bed.comm.size());
     source = input::parse(slice.scene, path, {});
     check_container(scene, source);
+    check_sides(scene, slice.confined);
     for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
   });
   add_particles(slice.rows, bed.store);

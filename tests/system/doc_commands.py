@@ -43,6 +43,11 @@ COMMANDS = {
     "packmpi estimate input/quickstart.toml --set target.porosity=0.40 --no-probe": "",
     "packmpi input/quickstart.toml --set target.porosity=0.40 -o porosity":
         ("--set target.porosity=0.40", "--set target.porosity=0.6 --set target.tolerance=0.5 --set container.size=[0.3,0.3,0.2] --set dynamics.relaxation=0.01 " + SMALL),
+    "packmpi check input/confined.toml": "",
+    "packmpi estimate input/confined.toml --no-probe": "",
+    "packmpi input/confined.toml -o specimen": "--set container.size=[0.08,0.08,0.03] --quiet",
+    "packmpi convert specimen/confined.hdf --to lammps": "",
+    "lmp -in specimen/confined.lammps.in -var data specimen/confined.lammps.data -var steps 10000": ("-var steps 10000", "-var steps 10 -var holding 10 -screen none"),
     "packmpi analyze quickstart.hdf": "",
     "packmpi plot quickstart.hdf": "--only density",
     "packmpi report quickstart.hdf": "--size 150",
@@ -55,7 +60,7 @@ NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
-          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "made/figure_4.png"]
+          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
 
 problems = []

@@ -62,7 +62,8 @@ class Pack:
     path            the file; None: the pack is in memory only, save() writes it
     id              (N): ascending; over all ranks 0 ..
     dimension       2 or 3
-    size            (dimension): lateral extents, then the target height H_d [m]
+    size            (dimension): lateral extents (under stress: where the sides have come to), then the target height H_d [m]
+    lid             height of the lid [m], or None: the pack has a free surface
     position        (N, 3): centres [m]; in 2D z is 0 and y is upward
     radius          (N) [m]
     velocity        (N, 3) [m/s]
@@ -124,6 +125,10 @@ class Pack:
     def _tell(self, summary: dict[str, Any], audit: dict[str, Any], provenance: dict[str, Any]) -> None:
         self.summary, self.audit, self.provenance = summary, audit, provenance
         self.size: Floats = np.array(summary["size"], dtype=float)
+        self.lid: Optional[float] = summary.get("lid")
+        if self.lid is not None:
+            sides = [summary["length_under_lid_x"], summary["length_under_lid_y"]]
+            self.size[:-1] = sides[:len(self.size) - 1]
         self.dimension: int = summary["dimension"]
         self.phi: float = summary["phi"]
         self.phi_bulk: float = summary["phi_bulk"]

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure  # noqa: E402
 
 from .problem import Problem  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
-from .style import BACKGROUND, INK, TARGET  # noqa: E402
+from .style import BACKGROUND, INK, LID, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
 
 PROPERTIES = ("radius", "layer", "contacts", "speed")
@@ -92,10 +92,14 @@ class Colouring:
         bar.set_label(self.label)
 
 
+LID_WORDS = "blue: lid"
+
+
 def container_size(pack: Pack) -> str:
     """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest."""
     scale, unit = length_unit(float(pack.size.max()))
-    return " x ".join(f"{scale * length:g}" for length in pack.size) + f" {unit}"
+    lengths = [*pack.size[:-1], pack.size[-1] if pack.lid is None else pack.lid]
+    return " x ".join(f"{scale * length:g}" if pack.lid is None else f"{scale * length:.4g}" for length in lengths) + f" {unit}"
 
 
 def caption(pack: Pack) -> str:
@@ -119,7 +123,7 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     axes.axis("off")
     colouring.bar(figure, figure.add_axes([(left + width + 22) / across, 0.14, 16 / across, 0.66]))
     figure.text(12 / across, 1.0 - 10 / up, caption(pack), va="top", fontsize=11, color=INK)
-    figure.text(12 / across, 8 / up, "red: target height", fontsize=9, color=TARGET)
+    figure.text(12 / across, 8 / up, "red: target height" if pack.lid is None else LID_WORDS, fontsize=9, color=LID if pack.lid is not None else TARGET)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
     plt.close(figure)
 
@@ -156,18 +160,21 @@ def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     axes.add_collection(EllipseCollection(
         diameter, diameter, np.zeros(pack.count), units="xy", facecolors=colouring.rgba(), edgecolors=INK,
         linewidths=min(0.6, 0.04 * points), offsets=pack.position[:, :2], transOffset=axes.transData, zorder=2))
-    note = "red: target height"
+    note = "red: target height" if pack.lid is None else LID_WORDS
     if show:
         note += f";  lines: contact forces, mean {chain_lines(pack, axes, 0.1 * points):.2g} N"
     axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)
-    axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
+    if pack.lid is None:
+        axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
+    else:
+        axes.plot([0, width], [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=False, zorder=5)
     axes.set_xlim(0.0, width)
     axes.set_ylim(0.0, top)
     axes.axis("off")
     bar = [1.0 - (strip - 0.22) / across, (rim + 0.08 * high) / up, 0.16 / across, 0.84 * high / up]
     colouring.bar(figure, figure.add_axes(bar))
     figure.text(rim / across, 1.0 - 0.1 / up, caption(pack), va="top", fontsize=11, color=INK)
-    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=TARGET)
+    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=TARGET if pack.lid is None else LID)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
     plt.close(figure)
 

@@ -12,7 +12,7 @@ from vtk.util import numpy_support as convert
 
 from .problem import Problem
 from .pack import Floats, Pack
-from .style import BACKGROUND, INK, TARGET
+from .style import BACKGROUND, INK, LID, TARGET
 
 Point = tuple[float, float, float]
 Segment = tuple[Point, Point]
@@ -93,12 +93,30 @@ def frame(lx: float, ly: float, z: float) -> list[Segment]:
     return [((0, 0, z), (lx, 0, z)), ((lx, 0, z), (lx, ly, z)), ((lx, ly, z), (0, ly, z)), ((0, ly, z), (0, 0, z))]
 
 
+def plate_actor(lx: float, ly: float, z: float) -> Any:
+    """A horizontal plate that one looks through."""
+    plane = vtk.vtkPlaneSource()
+    plane.SetOrigin(0, 0, z)
+    plane.SetPoint1(lx, 0, z)
+    plane.SetPoint2(0, ly, z)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(plane.GetOutputPort())
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(colors.to_rgb(LID))
+    actor.GetProperty().SetOpacity(0.35)
+    actor.GetProperty().LightingOff()
+    return actor
+
+
 def container_actors(pack: Pack) -> list[Any]:
-    """The edges of the container, and the target height."""
+    """The edges of the container, and the target height; or a lid that lets what is under it be seen."""
     lx, ly, target = pack.size / extent(pack)
-    top = pack.top() / extent(pack)
+    top = (pack.top() if pack.lid is None else pack.lid) / extent(pack)
     upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
     thickness = 0.0020
+    if pack.lid is not None:
+        return [lines_actor(frame(lx, ly, 0) + upright, INK, thickness), lines_actor(frame(lx, ly, top), LID, 2.5 * thickness), plate_actor(lx, ly, top)]
     return [lines_actor(frame(lx, ly, 0) + upright, INK, thickness),
             lines_actor(frame(lx, ly, target), TARGET, 1.6 * thickness)]
 
