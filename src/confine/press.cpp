@@ -148,7 +148,9 @@ void Press::run(const Hooks& hooks) {
           fmt::format("step {} under the lid: height {:.6g} m, on it {:.4g} Pa, of contacts {:.4g} Pa, at rest "
                       "{:.4g} Pa",
                       now.steps, now.lid, got.on_lid, got.of_contacts.back(), got.vertical_at_rest));
-      now.over = got.worst() <= got.tolerance && hooks.at_rest();
+      const bool there = got.worst() <= got.tolerance;
+      now.over = there && hooks.at_rest();
+      if (there && !now.over) hooks.stop();
     }
     if (now.steps % row_ == 0 || now.over) hooks.moment(static_cast<double>(now.steps) / static_cast<double>(most_));
     if (!now.over) hooks.look();

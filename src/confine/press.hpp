@@ -21,6 +21,7 @@ namespace packmpi::confine {
 struct Hooks {
   std::function<void()> step;                   ///< collective: a step of the bed, of scene.confining_step
   std::function<bool()> at_rest;                ///< collective: by the measures of [rest]
+  std::function<void()> stop;                   ///< takes velocity and spin from every particle
   std::function<void(double share)> moment;     ///< collective: of output.log_every
   std::function<std::int64_t()> steps_to_look;  ///< at least 1, the same on all ranks
   std::function<void()> look;                   ///< collective; may end it by an Error
@@ -34,7 +35,8 @@ class Press {
         particles::Store& store, neighbor::Neighborhood& neighborhood, scene::Ownership& ownership);
 
   /// Collective. From where the state says until the stress is there within its tolerance and the bed at rest, both
-  /// looked at after every ten crossings of a wave, or the time is up. What lid and sides do on the particles goes to
+  /// looked at after every ten crossings of a wave, or the time is up. Particles that move on though the stress is
+  /// there, such as rattlers that spin, are stopped at such looks. What lid and sides do on the particles goes to
   /// State::work.
   void run(const Hooks& hooks);
 

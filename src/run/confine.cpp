@@ -39,6 +39,7 @@ void confine_bed(Bed& bed, Attendant& attendant) {
   confine::Press press(bed.comm, scene, *bed.box, now, bed.store, bed.neighborhood, bed.ownership);
   press.run({.step = [&] { bed.advance(1); },
              .at_rest = rests,
+             .stop = [&] { bed.stop(); },
              .moment = [&](double share) { book(), attendant.moment(share); },
              .steps_to_look = [&] { return attendant.steps_to_look(); },
              .look = [&] { book(), attendant.look(); }});
