@@ -76,7 +76,11 @@ void compare(Buffer& out, const RunRecord& r) {
   line(out, "rattlers, share", "", number(r.rest.network.rattlers));
   for (const Criterion& c : r.criteria) line(out, c.words, limit_words(c), number(c.value));
   line(out, "wall penetration / radius, worst", "", number(r.audit.worst_wall_penetration));
-  line(out, "force on the floor [N] (target: the weight)", number(r.weight), number(r.floor_force));
+  if (r.confined.on) {
+    line(out, "force on the floor [N]", "", number(r.floor_force));  // the lid's too
+  } else {
+    line(out, "force on the floor [N] (target: the weight)", number(r.weight), number(r.floor_force));
+  }
   line(out, "kinetic energy [J]", "", number(r.kinetic_energy));
   line(out, "particles lost", "0", number(r.audit.expected - r.audit.found));
   line(out, "particles not finite", "0", number(r.audit.non_finite));
