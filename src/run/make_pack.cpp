@@ -164,11 +164,15 @@ report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
 
 report::RunRecord make_in_memory(const comm::Comm& comm, const scene::Scene& scene, Attendant& guest) {
   const Stopwatch watch;
-  Bed bed(comm, scene);
+  std::optional<scene::Scene> moving;  // whose container a lid changes
+  if (scene.in.confinement) moving = scene;
+  Bed bed(comm, moving ? *moving : scene);
+  if (moving) bed.box = &moving->container;
   if (scene.in.target) bed.progress.filling = find_filling(comm, scene);
   if (scene.in.start) take_over(bed);
   const pack::Progress before = bed.progress;
   fill(bed, guest);
+  confine_bed(bed, guest);
   report::RunRecord record = targets_of(comm, scene);
   measure_bed(bed, record);
   take_time(comm, watch, before, record);

@@ -97,6 +97,14 @@ TEST_F(Packings, AreToTheBitWhatTheProgramWrites) {
   expect_as_in_file(all, folder_ + "/all.hdf");
 }
 
+// What comes after the layers is not forgotten in memory.
+TEST_F(Packings, AreUnderTheLidOfTheProgram) {
+  const Scene pressed = Scene::from_text(text, "pressed.toml", {"confinement.vertical=500.0"});
+  const Packing in_memory = make_packing(pressed, MPI_COMM_WORLD).gathered(MPI_COMM_WORLD);
+  (void)make_packing(pressed, MPI_COMM_WORLD, {.folder = folder_});
+  if (comm_.rank() == 0) expect_as_in_file(in_memory, folder_ + "/pressed.hdf");
+}
+
 TEST_F(Packings, SpansStayWhereTheyAre) {
   const Packing pack = make_packing(scene_, MPI_COMM_WORLD);
   const Packing copy = pack;
