@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "cli/command_docs.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_schema.hpp"
@@ -273,7 +275,10 @@ constexpr std::array declarations{
     Declaration{Command::completion, "completion", "print the completion of this command line for a shell",
                 declare_completion}};
 
-std::string end_words() { return "Signals:\n" + lines(signal_words()) + "Exit codes:\n" + lines(exit_code_words()); }
+std::string end_words() {
+  return "Examples:\n" + lines(example_words()) + "Signals:\n" + lines(signal_words()) + "Exit codes:\n" +
+         lines(exit_code_words());
+}
 
 void declare_all(CLI::App& app, Request& request) {
   app.set_version_flag("--version", version_text(), "print version, git id and compiler");
@@ -295,6 +300,40 @@ void name_command(std::vector<std::string>& words) {
   const auto known = [&](const Declaration& d) { return words.front() == d.name; };
   if (words.empty() || std::ranges::any_of(declarations, known)) return;
   if (std::ranges::find(answers, words.front()) == answers.end()) words.insert(words.begin(), "run");
+}
+
+// What to say of a first word that is neither a command nor a file, and near to a command; "" of any other.
+std::string mistyped_command(const std::vector<std::string>& words) {
+  if (words.empty() || words.front().starts_with('-') || words.front().find_first_of("./") != std::string::npos)
+    return "";
+  std::vector<std::string> names;
+  for (const Declaration& d : declarations) names.emplace_back(d.name);
+  if (std::ranges::find(names, words.front()) != names.end()) return "";
+  const auto near = text::closest(words.front(), names);
+  std::error_code ignored;
+  if (!near || std::filesystem::exists(words.front(), ignored)) return "";
+  return fmt::format("packmpi: there is no command \"{}\", and no scene of that name; did you mean \"{}\"?\n",
+                     text::printable(words.front()), *near);
+}
+
+// A line for the first option that the command has not and that is near to one it has; "" if there is none.
+std::string mistyped_option(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return "";
+  const auto commands = app.get_subcommands([&](const CLI::App* one) { return one->get_name() == words.front(); });
+  if (commands.empty()) return "";
+  const CLI::App* command = commands.front();
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || std::ranges::find(names, name) != names.end()) continue;
+    if (const auto near = text::closest(name, names)) {
+      return fmt::format("{}: did you mean \"{}\"?\n", text::printable(name), *near);
+    }
+  }
+  return "";
 }
 
 OptionWords words_of(const CLI::Option& option) {
@@ -330,6 +369,9 @@ std::vector<CommandWords> command_words() {
 
 std::variant<Request, Reply> parse_command_line(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
+  if (const std::string flaw = mistyped_command(words); !flaw.empty()) {
+    return Reply{flaw, static_cast<int>(ExitCode::bad_input)};
+  }
   name_command(words);
   Request request;
   CLI::App app{about, "packmpi"};
@@ -340,6 +382,7 @@ std::variant<Request, Reply> parse_command_line(int argc, const char* const* arg
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, err;
     const int code = app.exit(error, out, err);
+    if (code != 0) err << mistyped_option(app, words);
     return Reply{out.str() + err.str(), code == 0 ? 0 : static_cast<int>(ExitCode::bad_input)};
   }
   if (request.command == Command::schema) return Reply{cli::scene_schema(), 0};

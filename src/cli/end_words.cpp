@@ -3,6 +3,18 @@
 
 namespace packmpi::cli {
 
+const std::vector<EndWords>& example_words() {
+  static const std::vector<EndWords> lines{
+      {"packmpi init bed.toml", "a scene to begin with: every key, with its meaning"},
+      {"packmpi estimate bed.toml", "particles, memory and time, before it is run"},
+      {"mpirun -n 4 packmpi bed.toml -o out", "the pack, on four ranks: out/bed.hdf"},
+      {"packmpi bed.toml --set contact.friction=0.1", "the same with another friction"},
+      {"packmpi bed.toml -o out --restart auto", "go on from the newest checkpoint"},
+      {"packmpi report out/bed.hdf", "one page on it, out/bed.html"},
+      {"packmpi convert out/bed.hdf --to lammps", "for another code"}};
+  return lines;
+}
+
 const std::vector<EndWords>& signal_words() {
   static const std::vector<EndWords> lines{{"USR1", "write a checkpoint and go on"},
                                            {"USR2, TERM, INT", "write a checkpoint and end with code 75"},

@@ -60,6 +60,7 @@ std::string manual_page() {
       "of "
       "ranks, and after any restart.\nWithout a command, \\fBrun\\fR is meant.\n.SH COMMANDS\n";
   for (const CommandWords& command : command_words()) out += section(command);
+  out += ".SH EXAMPLES\n" + entries(example_words());
   out += ".SH SIGNALS\n" + entries(signal_words());
   out += ".SH EXIT STATUS\n" + entries(exit_code_words());
   return out;

@@ -57,6 +57,9 @@ struct CommandWords {
 /// All commands with all their options, from the declarations that the parser uses. Local.
 [[nodiscard]] std::vector<CommandWords> command_words();
 
+/// Commands to begin with, and what they do; in help and manual.
+[[nodiscard]] const std::vector<EndWords>& example_words();
+
 /// What ends every help text and the manual: signals and exit codes, a line each.
 [[nodiscard]] const std::vector<EndWords>& exit_code_words();
 [[nodiscard]] const std::vector<EndWords>& signal_words();

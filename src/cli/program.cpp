@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 
 #include "base/log.hpp"
 #include "base/memory.hpp"
@@ -125,8 +126,14 @@ int use_scene(const comm::Comm& comm, const Request& request) {
   expect_memory(forecast::memory_a_rank(scene, comm.size()));
   if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
     return ensemble::make_ensemble(comm, in, request.run);
+  const int on_machine = comm.ranks_on_machine();
   if (comm.rank() == 0) {
     for (const std::string& words : library::warnings_of(scene)) log::warn(words);
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    if (request.command == Command::run) {
+      for (const std::string& words : library::notes_of(scene, comm.size(), on_machine, cores))
+        log::info("note: " + words);
+    }
   }
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);
 }

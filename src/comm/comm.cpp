@@ -78,6 +78,15 @@ void Comm::count(Purpose purpose, Traffic traffic) const noexcept {
   sent.bytes += traffic.bytes;
 }
 
+int Comm::ranks_on_machine() const {
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  int ranks = 1;
+  MPI_Comm_size(machine, &ranks);
+  MPI_Comm_free(&machine);
+  return ranks;
+}
+
 void Comm::barrier() const { MPI_Barrier(comm_); }
 
 std::int64_t Comm::sum(std::int64_t mine) const { return reduce(mine, MPI_SUM); }

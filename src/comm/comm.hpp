@@ -42,6 +42,8 @@ class Comm {
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] MPI_Comm handle() const noexcept { return comm_; }
 
+  /// How many ranks share this rank's machine. Collective.
+  [[nodiscard]] int ranks_on_machine() const;
   void barrier() const;                                     ///< collective
   [[nodiscard]] std::int64_t sum(std::int64_t mine) const;  ///< collective
   [[nodiscard]] std::int64_t min(std::int64_t mine) const;  ///< collective

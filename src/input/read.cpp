@@ -16,6 +16,7 @@
 #include "input/keys.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
+#include "tables/known_names.hpp"
 
 namespace packmpi::input {
 namespace {
@@ -40,6 +41,7 @@ std::string in_words(const std::vector<std::string>& names) {
 /// What the user may have meant by the unknown `name` in `table`.
 std::string suggestion(const std::string& table, const std::string& name) {
   const std::vector<std::string> siblings = names_in(table);
+  if (auto known = tables::known_elsewhere(table, name)) return *known;
   if (const auto near = text::closest(name, siblings)) return fmt::format("did you mean \"{}\"?", *near);
   for (const Key& key : keys()) {
     const auto [home, last] = split_path(key.path);
@@ -47,8 +49,6 @@ std::string suggestion(const std::string& table, const std::string& name) {
       return home.empty() ? fmt::format("\"{}\" belongs above all tables", name)
                           : fmt::format("\"{}\" belongs into [{}]", name, home);
   }
-  if (name.find("porosity") != std::string::npos || name.find("void") != std::string::npos)
-    return "a density is asked for by [target] porosity, void_ratio, solid_fraction or relative_density";
   const std::string where = table.empty() ? "a scene has" : fmt::format("[{}] has", table);
   return fmt::format("{} {}", where, in_words(siblings));
 }

@@ -46,6 +46,22 @@ std::string fines_words(const scene::Fines& fines) {
                      100.0 * fines.share, fines.particles);
 }
 
+std::vector<std::string> notes_of(const scene::Scene& scene, int ranks, int on_machine, int cores) {
+  constexpr std::int64_t few = 1000;  // particles a rank, below which ranks wait for each other more than they work
+  Warnings notes;
+  if (ranks == 1) return notes;
+  if (cores > 0 && on_machine > cores) {
+    notes.push_back(fmt::format("{} ranks share {} core{} of this machine, and wait for each other; {} would be faster",
+                                on_machine, cores, cores == 1 ? "" : "s", cores));
+  }
+  const std::int64_t particles = scene::expected_filling(scene, scene::expected_fraction(scene).value).particles;
+  if (particles < few * ranks) {
+    notes.push_back(fmt::format("about {} particles on {} ranks: below {} a rank, fewer ranks are mostly as fast",
+                                particles, ranks, few));
+  }
+  return notes;
+}
+
 std::vector<std::string> warnings_of(const scene::Scene& scene) {
   Warnings warnings;
   if (!insertion_alone(scene.in)) {

@@ -11,6 +11,10 @@ namespace packmpi::library {
 /// Sentences on what is allowed and yet likely a mistake: step, softness, fines. Local, pure.
 [[nodiscard]] std::vector<std::string> warnings_of(const scene::Scene& scene);
 
+/// Sentences on a run of so many ranks, of which so many share a machine with so many cores: cores that are shared,
+/// ranks that have little to do. Local, pure.
+[[nodiscard]] std::vector<std::string> notes_of(const scene::Scene& scene, int ranks, int on_machine, int cores);
+
 /// "the finest 5 % by mass, below 1e-4 m, are 97 % of about 2e+06 particles". Local.
 [[nodiscard]] std::string fines_words(const scene::Fines& fines);
 

@@ -37,6 +37,27 @@ TEST(CommandLine, CommandsAndOptions) {
   EXPECT_EQ(options.run.verbosity, log::Verbosity::quiet);
 }
 
+TEST(CommandLine, TyposAreAnswered) {
+  const auto said = [](std::vector<const char*> words) {
+    const Reply reply = std::get<Reply>(parse(std::move(words)));
+    EXPECT_EQ(reply.code, 2);
+    return reply.text;
+  };
+  EXPECT_EQ(said({"chekc", "a.toml"}),
+            "packmpi: there is no command \"chekc\", and no scene of that name; did you mean \"check\"?\n");
+  EXPECT_NE(said({"run", "a.toml", "--sede", "3"}).find("--sede: did you mean \"--seed\"?"), std::string::npos);
+  EXPECT_NE(said({"a.toml", "--ouptut=x"}).find("--ouptut: did you mean \"--output\"?"), std::string::npos);
+  EXPECT_EQ(said({"a.toml", "--quite-another"}).find("did you mean"), std::string::npos);
+  EXPECT_EQ(std::get<Request>(parse({"cheek.toml"})).run.scene, "cheek.toml");  // a file, there or not
+  EXPECT_EQ(std::get<Request>(parse({"something"})).run.scene, "something");    // near to nothing
+}
+
+TEST(CommandLine, HelpHasExamples) {
+  const Reply help = std::get<Reply>(parse({"--help"}));
+  EXPECT_EQ(help.code, 0);
+  for (const EndWords& example : example_words()) EXPECT_NE(help.text.find(example.term), std::string::npos);
+}
+
 TEST(CommandLine, ToolsBeginBeforeMpiAndAlone) {
   const auto wants = [](std::vector<const char*> words) {
     words.insert(words.begin(), "packmpi");

@@ -1,0 +1,65 @@
+#include "tables/known_names.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace packmpi::tables {
+namespace {
+
+struct Known {
+  std::string_view part;    // of a name
+  std::string_view not_in;  // the table whose own business it is
+  std::string_view words;
+};
+
+constexpr std::string_view no_attraction =
+    "not in this version: contacts do not attract each other; nearest is [near_field], a pair force within a cut-off";
+constexpr std::string_view spheres_alone =
+    "not in this version: particles are spheres or discs; nearest is contact.rolling_friction, which stands for shape";
+constexpr std::string_view hertz =
+    "contacts are Hertz', whose stiffness follows from particles.youngs_modulus and particles.poisson_ratio";
+constexpr std::string_view stress = "a stress is asked for by [confinement]";
+constexpr std::string_view shaking =
+    "not in this version; a denser bed is asked for by [target], which fills it in with less friction";
+
+// The first that is part of the name holds.
+constexpr std::array all{
+    Known{"static", "",
+          "one coefficient, contact.friction, is for sticking and sliding; contact.tangential = "
+          "\"mindlin\" lets contacts stick"},
+    Known{"dynamic_friction", "", "one coefficient, contact.friction, is for sticking and sliding"},
+    Known{"cohesi", "", no_attraction},
+    Known{"adhesi", "", no_attraction},
+    Known{"surface_energy", "", no_attraction},
+    Known{"jkr", "", no_attraction},
+    Known{"capillar", "", no_attraction},
+    Known{"moisture", "", no_attraction},
+    Known{"clump", "", spheres_alone},
+    Known{"multisphere", "", spheres_alone},
+    Known{"ellips", "", spheres_alone},
+    Known{"aspect_ratio", "", spheres_alone},
+    Known{"stiffness", "", hertz},
+    Known{"restitution", "", "give contact.restitution, one number at any speed"},
+    Known{"pressure", "confinement", stress},
+    Known{"servo", "confinement", stress},
+    Known{"piston", "confinement", stress},
+    Known{"vibrat", "", shaking},
+    Known{"tapping", "", shaking},
+    Known{"temperature", "", "not in this version: there is no heat"},
+    Known{"porosity", "target",
+          "a density is asked for by [target] porosity, void_ratio, solid_fraction or relative_density"},
+    Known{"void_ratio", "target",
+          "a density is asked for by [target] porosity, void_ratio, solid_fraction or relative_density"},
+};
+
+}  // namespace
+
+std::optional<std::string> known_elsewhere(std::string_view table, std::string_view name) {
+  const auto* found = std::ranges::find_if(all, [&](const Known& known) {
+    return name.find(known.part) != std::string_view::npos && (known.not_in.empty() || known.not_in != table);
+  });
+  if (found == all.end()) return std::nullopt;
+  return std::string(found->words);
+}
+
+}  // namespace packmpi::tables
