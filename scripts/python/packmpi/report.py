@@ -96,6 +96,7 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
              (f"{made['coordination']:.2f}", "coordination number"),
              (length(made["height"]), f"high; target {length(pack.size[-1])}"),
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
+             (f"{0.001 * made['stress_on_lid']:.4g} kPa", "stress on the lid") if made.get("stress_on_lid") else
              (f"{made['floor_force'] / made['weight']:.3f}" if made["weight"] else "–", "of the weight on the floor")]
     tiles = [f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles]
     return f'<div class="tiles">{"".join(tiles)}</div>'
