@@ -35,9 +35,9 @@ struct Plane {
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
-  std::array<bool, 2> periodic{};  ///< per lateral axis
-  std::optional<double> lid;       ///< [m] height of a rigid lid; none: open at the top
-  Vec3 speed{-0.0, -0.0, -0.0};    ///< [m/s] of walls that move: the high one of each lateral axis, and the lid
+  std::array<bool, 2> periodic{};            ///< per lateral axis
+  std::optional<double> lid = std::nullopt;  ///< [m] height of a rigid lid; none: open at the top
+  Vec3 speed{-0.0, -0.0, -0.0};  ///< [m/s] of walls that move: the high one of each lateral axis, and the lid
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }

@@ -33,7 +33,7 @@ Json to_object(const State& s) {
           {"coordination_of_seed", s.coordinations}};
 }
 
-std::string number(double value) { return fmt::format("{:.4f}", value); }
+std::string four_digits(double value) { return fmt::format("{:.4f}", value); }
 
 }  // namespace
 
@@ -73,9 +73,10 @@ std::string to_table(const LimitsReport& l) {
   both("wall friction while filling", [](const State& s) { return s.wall_friction; });
   both("rolling friction while filling", [](const State& s) { return s.rolling_friction; });
   both("twisting friction while filling", [](const State& s) { return s.twisting_friction; });
-  line("solid fraction of the bulk", number(l.loosest.mean()), number(l.densest.mean()));
-  line("porosity", number(porosity(l.loosest.mean())), number(porosity(l.densest.mean())));
-  line("void ratio, e_max and e_min", number(void_ratio(l.loosest.mean())), number(void_ratio(l.densest.mean())));
+  line("solid fraction of the bulk", four_digits(l.loosest.mean()), four_digits(l.densest.mean()));
+  line("porosity", four_digits(porosity(l.loosest.mean())), four_digits(porosity(l.densest.mean())));
+  line("void ratio, e_max and e_min", four_digits(void_ratio(l.loosest.mean())),
+       four_digits(void_ratio(l.densest.mean())));
   both("standard error of the solid fraction", [](const State& s) { return s.error(); });
   both("coordination number", [](const State& s) { return mean_of(s.coordinations); });
   return fmt::to_string(out);

@@ -261,6 +261,8 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neig
     case neighbor::Wall::y_high:
       n[1] = 1.0, distance = data.size[1] - i.x[1];
       break;
+    case neighbor::Wall::lid:  // none of the clouds has one
+      break;
   }
   double reduced_radius = data.law.wall.reduced_radius;
   double reduced_mass = data.law.wall.reduced_mass;
