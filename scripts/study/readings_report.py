@@ -9,6 +9,8 @@ import reproduction_report as tables
 BEGIN, END = "<!-- readings: begin -->", "<!-- readings: end -->"
 TARGET = 0.5   # [m] H_d of all examples
 COLUMNS = [(example, rotation) for example in tables.TITLES for rotation in ("on", "off")]
+FLAT = [column for column in COLUMNS if column[0] in ("5.1", "5.2")]
+SPACE = [column for column in COLUMNS if column not in FLAT]
 SHOWN = 20          # readings in the table
 
 
@@ -171,6 +173,18 @@ def table_of(readings):
     return tables.table(heads, rows)
 
 
+def meets(reading, columns):
+    """Is every one of these columns run and within the bounds?"""
+    return all(reading.values(column) and abs(reading.off(column)) <= tables.PAPER_SDS for column in columns)
+
+
+def seeds_of(readings, columns):
+    """How many seeds the columns of the ways to insert have, in words."""
+    counts = sorted({len(one.values(column)) for one in readings for column in columns
+                     if one.values(column) and one.packs[column][0]["program"] == ""})
+    return f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+
+
 def section(data):
     """The lines of doc/reproduction.md between its markers, and they; none without doc/data/readings.csv."""
     if not (data / "readings.csv").exists():
@@ -182,11 +196,15 @@ def section(data):
     readings.sort(key=lambda one: (-len(one.measured), one.excluded, one.score))
     meeting = [one for one in readings if one.met == len(COLUMNS)]
     excluded = [one for one in readings if one.excluded]
-    unblemished = [one for one in readings if one.met == len(one.measured) and all(one.least_off(c) <= tables.PAPER_SDS for c in one.bounds)]
+    flat = [one for one in readings if meets(one, FLAT)]
+    nearest = min((one for one in flat if set(SPACE) <= set(one.measured)), key=lambda one: max(abs(one.off(c)) for c in SPACE))
+    farthest = max(SPACE, key=lambda column: abs(nearest.off(column)))
+    scatters = sorted(tables.sd(one.values(c)) for one in readings for c in SPACE if len(one.values(c)) > 1)
     words = f"""The paper's Algorithm 1 leaves open where a layer's region begins, whether it ends at H_d, when the loop stops, and what V in eq. (22)
-is. `scripts/study/readings.py` tries them. {len(readings)} readings: {len(meeting)} meet all eight columns within 2 sd, {len(excluded)} are excluded, having a column that is off by more than
-2 + 2 / sqrt(packs) sd, and {len(unblemished)} have no column off by more than 2 sd among those that were run. **Most columns were not run for most readings** (empty
-below): an open question, which `scripts/study/readings.py --seeds 10` answers in some three hours of one core. Below are those of which most columns were run, and of them the nearest:
+is. `scripts/study/readings.py` tries them. {len(readings)} readings: **{len(meeting) or "none"} meets all eight columns within 2 sd**; {len(excluded)} are excluded, having a column that is off by more than
+2 + 2 / sqrt(packs) sd. {len(flat)} meet the four columns in 2D (seeds: {seeds_of(readings, FLAT)}); of them the nearest in 3D (seeds: {seeds_of(readings, SPACE)}) begins at {nearest.way.words}, is
+{STOPS[nearest.stop][1]}, V to {VOLUMES[nearest.volume]}, and has {tables.mean(nearest.values(farthest)):.3f} where the paper has {tables.mean(nearest.paper[farthest]):.3f} in {farthest[0]} with rotation {farthest[1]}: {abs(nearest.off(farthest)):.0f} of the paper's sd. Seeds of one
+reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), so that few seeds tell. Below are the readings of which most columns were run, and of them the nearest:
 the number of packs in brackets, **bold** what is off by more than 2 sd; rms and worst are the distances of the means in the paper's standard deviations. "Discs" and
 "spheres" are particles inserted, from the least to the most. The row of all eight columns is packmpi as it is; "i" is an independent serial program
 ([data/readings_independent.csv](data/readings_independent.csv)); ">" is from a run that was cut short: with V up to the surface phi rises layer by layer, and it had that
@@ -200,12 +218,24 @@ def chapter(data):
     return ["## Readings of the method", "", *lines, ""] if lines else []
 
 
+def merged(kept, made):
+    """Rows of doc/data/readings.csv that are kept, those of packs that were made anew replaced, in the order of WAYS."""
+    def pack(row):
+        return row["way"], row["example"], row["rotation"], int(row["seed"])
+
+    anew = {pack(row) for row in made}
+    order = {way.name: number for number, way in enumerate(WAYS)}
+    rows = [row for row in kept if pack(row) not in anew] + made
+    return sorted(rows, key=lambda row: (order[row["way"]], *pack(row)[1:]))
+
+
 def write(doc, runs):
-    """doc/data/readings.csv, if there are runs, and the table into doc/reproduction.md."""
-    rows = packs_of(runs)
-    if rows:
-        with open(doc / "data" / "readings.csv", "w", newline="") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+    """Adds runs, if there are any, to doc/data/readings.csv, and the table to doc/reproduction.md."""
+    made, file_of_packs = packs_of(runs), doc / "data" / "readings.csv"
+    if made:
+        rows = merged(tables.read(file_of_packs) if file_of_packs.exists() else [], made)
+        with open(file_of_packs, "w", newline="") as file:
+            writer = csv.DictWriter(file, fieldnames=list(made[0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
     page = doc / "reproduction.md"

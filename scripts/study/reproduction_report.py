@@ -145,7 +145,7 @@ with the same readings of the method also come out above the paper: an independe
 with the nearest law it has (example 5.3: phi_bulk 0.607 with rotation, 0.581 without). The paper's columns in 3D vary
 little from pack to pack (0.534 to 0.542 in one of them), as if the inserted volume had set them. It does if layers end at H_d: an
 independent program gets 0.564 and 0.530 so in example 5.3, where the paper has 0.569 and 0.539. But the same reading misses three of
-four columns in 2D, all of which ours meets. No reading that was tried is known to meet all eight columns: "Readings of the method" has what was run. So the
+four columns in 2D, all of which ours meets. None of the 126 readings that were tried meets all eight columns ("Readings of the method"). So the
 scenes stay as they are.
 Its remark on 5.3 that spheres of radius 0.01 m form an fcc lattice is not
 confirmed: there is none ([analyze.md](analyze.md)). With layers that end at H_d such a pack was not made; it is the same, to the bit, until the first
