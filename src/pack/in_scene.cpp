@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "neighbor/contact_memory.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/histories.hpp"
 #include "pack/pack.hpp"
@@ -50,9 +51,25 @@ double longest_spring(const scene::Scene& scene, double friction) {
   return friction * moduli / 6.0 * (1.0 + 20.0 * in.contact.damping_ratio) * 0.5 * scene.sizes.largest();
 }
 
+/// Is the other end of this contact, if it is a wall, one that the scene has? The lid comes with the confinement.
+bool has_wall(const scene::Scene& scene, const HistoryRow& row) {
+  if (row.other >= 0) return true;
+  const auto wall = static_cast<geometry::Surface>(neighbor::wall_partner(neighbor::Wall{}) - row.other);
+  return scene.container.has(wall) || (wall == geometry::Surface::lid && scene.in.confinement);
+}
+
+void check_walls(const Histories& histories, const scene::Scene& scene) {
+  for (const HistoryRow& row : histories.rows) {
+    if (has_wall(scene, row)) continue;
+    refuse_in_scene(fmt::format("its contact of {} and {} has ends that cannot be: the scene has no such wall",
+                                row.other, row.holder));
+  }
+}
+
 }  // namespace
 
 void check_springs(const Histories& histories, const scene::Scene& scene) {
+  check_walls(histories, scene);
   const input::Contact& contact = scene.in.contact;
   const std::array longest{longest_spring(scene, std::max(contact.friction, contact.wall_friction)),
                            longest_spring(scene, contact.rolling_friction),

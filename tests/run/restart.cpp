@@ -539,7 +539,7 @@ TEST_P(Forged, RadiiOutsideOfTheScene) {
 }
 
 TEST_P(Forged, ContactsWithEndsThatCannotBe) {
-  for (const GlobalId other : {GlobalId{1} << 40, GlobalId{-6}, INT64_MIN}) {
+  for (const GlobalId other : {GlobalId{1} << 40, GlobalId{-6}, GlobalId{-7}, INT64_MIN}) {
     expect_refused("has ends that cannot be", [&](auto&, auto& contacts) { contacts.rows.back().other = other; });
   }
   expect_refused("has ends that cannot be",
