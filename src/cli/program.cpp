@@ -18,11 +18,11 @@
 #include "comm/petsc.hpp"
 #include "disk/text_file.hpp"
 #include "ensemble/ensemble.hpp"
+#include "forecast/advice.hpp"
 #include "forecast/estimate.hpp"
 #include "forecast/limits.hpp"
 #include "input/fidelity.hpp"
 #include "input/restitution.hpp"
-#include "library/advice.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
 #include "run/files.hpp"
@@ -47,7 +47,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
-    if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", library::fines_words(*fines));
+    if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));
     if (insertion_alone(scene.in)) {
       print(words + "# insertion alone: no step is taken\n");
       return 0;
@@ -128,10 +128,10 @@ int use_scene(const comm::Comm& comm, const Request& request) {
     return ensemble::make_ensemble(comm, in, request.run);
   const int on_machine = comm.ranks_on_machine();
   if (comm.rank() == 0) {
-    for (const std::string& words : library::warnings_of(scene)) log::warn(words);
+    for (const std::string& words : forecast::warnings_of(scene)) log::warn(words);
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     if (request.command == Command::run) {
-      for (const std::string& words : library::notes_of(scene, comm.size(), on_machine, cores))
+      for (const std::string& words : forecast::notes_of(scene, comm.size(), on_machine, cores))
         log::info("note: " + words);
     }
   }

@@ -1,8 +1,13 @@
-#include "library/advice.hpp"
+#include "forecast/advice.hpp"
 
 #include <fmt/core.h>
 
-namespace packmpi::library {
+#include <algorithm>
+#include <cmath>
+
+#include "run/settle.hpp"
+
+namespace packmpi::forecast {
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -39,6 +44,36 @@ void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {
                   fines_words(*fines), from + 0.05 * (to - from), to, fines->without));
 }
 
+// Millions of steps that nothing is gained by: layers that go on after they have settled, particles harder than their
+// overlaps show. What would do is what "balanced" takes.
+void warn_of_length(const scene::Scene& scene, Warnings& warnings) {
+  constexpr double many_steps = 5e6, many_falls = 30.0, enough_falls = 2.0, small_overlap = 1e-4, worth = 3.0;
+  const double gravity = scene.in.jamming.gravity, modulus = scene.in.particles.youngs_modulus;
+  const double layers = static_cast<double>(scene::expected_layers(scene, scene::expected_fraction(scene).value));
+  const double steps = layers * static_cast<double>(run::steps_of(scene, run::Part::layer));
+  if (!(gravity > 0.0) || steps < many_steps) return;
+  const double fall = std::sqrt(2.0 * scene.in.layers.thickness / gravity);
+  const double falls = scene.in.layers.duration / fall;
+  const double softer = scene::modulus_for(scene, small_overlap, modulus);
+  double left = steps;  // of steps, which are as long as E^-0.4
+  std::string why, instead;
+  if (falls > many_falls) {
+    why = fmt::format("layers.duration = {:.3g} s is {:.0f} falls through a layer", scene.in.layers.duration, falls);
+    instead = fmt::format("layers.duration = {:.2g} ({:g} falls)", enough_falls * fall, enough_falls);
+    left *= enough_falls / falls;
+  }
+  if (softer * worth < modulus) {
+    why += fmt::format(
+        "{}particles.youngs_modulus = {:.3g} Pa asks for steps of {:.2g} s, for overlaps of {:.2g} radii",
+        why.empty() ? "" : " and ", modulus, scene.settling.time_step, scene::expected_overlap(scene, modulus));
+    instead += fmt::format("{}particles.youngs_modulus = {:.2g} (overlaps of {:g})", instead.empty() ? "" : ", ",
+                           softer, small_overlap);
+    left *= std::pow(softer / modulus, 0.4);
+  }
+  if (why.empty()) return;
+  warnings.push_back(fmt::format("{:.2g} steps: {}; about {:.2g} would do with {}", steps, why, left, instead));
+}
+
 }  // namespace
 
 std::string fines_words(const scene::Fines& fines) {
@@ -67,9 +102,10 @@ std::vector<std::string> warnings_of(const scene::Scene& scene) {
   if (!insertion_alone(scene.in)) {
     warn_of_step(scene, warnings);
     warn_of_softness(scene, warnings);
+    warn_of_length(scene, warnings);
   }
   warn_of_fines(scene, warnings);
   return warnings;
 }
 
-}  // namespace packmpi::library
+}  // namespace packmpi::forecast

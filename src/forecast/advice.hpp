@@ -6,9 +6,9 @@
 #include "scene/expectation.hpp"
 #include "scene/scene.hpp"
 
-namespace packmpi::library {
+namespace packmpi::forecast {
 
-/// Sentences on what is allowed and yet likely a mistake: step, softness, fines. Local, pure.
+/// Sentences on what is allowed and yet likely a mistake: step, softness, length, fines. Local, pure.
 [[nodiscard]] std::vector<std::string> warnings_of(const scene::Scene& scene);
 
 /// Sentences on a run of so many ranks, of which so many share a machine with so many cores: cores that are shared,
@@ -18,4 +18,4 @@ namespace packmpi::library {
 /// "the finest 5 % by mass, below 1e-4 m, are 97 % of about 2e+06 particles". Local.
 [[nodiscard]] std::string fines_words(const scene::Fines& fines);
 
-}  // namespace packmpi::library
+}  // namespace packmpi::forecast

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "confine/servo.hpp"
+#include "forecast/advice.hpp"
 #include "forecast/probe.hpp"
 #include "geometry/volume.hpp"
 #include "pack/checkpoint.hpp"
@@ -389,6 +390,7 @@ report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const
   std::array<std::int64_t, 3> bytes{e.pack_bytes, e.checkpoint_bytes, e.step_log_bytes};
   comm.max(bytes);
   e.pack_bytes = bytes[0], e.checkpoint_bytes = bytes[1], e.step_log_bytes = bytes[2];
+  e.warnings = warnings_of(scene);
   if (question.probe) add_probe(comm, scene, e);
   return e;
 }

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/convert.hpp"
+#include "forecast/advice.hpp"
 #include "forecast/estimate.hpp"
 #include "input/input.hpp"
 #include "input/restitution.hpp"
-#include "library/advice.hpp"
 #include "library/failure.hpp"
 #include "packmpi/run.hpp"
 #include "run/analyze.hpp"
@@ -27,7 +27,7 @@ std::string check_words(const scene::Scene& scene) {
   facts["mean_overlap"] = scene::expected_overlap(scene, scene.in.particles.youngs_modulus);
   facts["restitution"] = input::restitution_of(scene.in.contact.damping_ratio, scene.in.contact.tension_cutoff);
   facts["remarks"] = scene.in.remarks;
-  facts["warnings"] = library::warnings_of(scene);
+  facts["warnings"] = forecast::warnings_of(scene);
   return facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

@@ -77,6 +77,7 @@ std::string to_json(const Estimate& e) {
                      {"insertions_per_second", e.probe->insertions_per_second}};
     root["wall_seconds"] = e.seconds;
   }
+  root["warnings"] = e.warnings;
   root["units"] = {{"size", "m"},
                    {"layer_thickness", "m"},
                    {"height", "m"},
@@ -126,6 +127,9 @@ std::string to_table(const Estimate& e) {
     line("probe", fmt::format("{} particles, {} steps: {:.3g}e6 particle-steps/s a rank", e.probe->particles,
                               e.probe->steps, 1e-6 * e.probe->particle_steps_per_second));
     line("wall time, about", text::duration(e.seconds) + most);
+  }
+  for (const std::string& warning : e.warnings) {
+    fmt::format_to(std::back_inserter(out), "warning: {}\n", warning);
   }
   return fmt::to_string(out);
 }

@@ -57,7 +57,8 @@ struct Estimate {
   std::int64_t step_log_bytes = 0;     ///< NAME.steps.csv, about
   std::optional<SearchCost> search;    ///< of a target
   std::optional<Probe> probe;
-  double seconds = 0.0;  ///< [s] wall time of the run; 0 without a probe
+  double seconds = 0.0;               ///< [s] wall time of the run; 0 without a probe
+  std::vector<std::string> warnings;  ///< what is likely a mistake
 };
 
 /// Stable key order, units in `units`. Local.
