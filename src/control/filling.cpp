@@ -138,7 +138,7 @@ Slab buried(double surface, double mean_diameter) {
 }
 
 Knob next_knob(const Filling& filling, const Squeeze& squeeze) {
-  return knob_for(filling, filling.target - filling.bias - (squeeze.next - squeeze.sample));
+  return knob_for(filling, filling.target - filling.bias - (squeeze.next - squeeze.ordered));
 }
 
 void correct(Filling& filling, double surface, const Slab& slab, double measured, const Squeeze& squeeze) {

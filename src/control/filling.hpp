@@ -16,9 +16,9 @@ using Knob = double;
 /// What a sample came to that was filled in with one knob: solid fractions of its bulk.
 struct Trial {
   Knob knob = 0.0;
-  double filled = 0.0;        ///< before the final relaxation
-  double relaxed = 0.0;       ///< after it, with the scene's own friction
-  double coordination = 0.0;  ///< after it
+  double filled = 0.0;   ///< before the final relaxation
+  double relaxed = 0.0;  ///< after it, with the scene's own friction; of target.state = "confined" under the stress
+  double coordination = 0.0;  ///< then
 };
 
 /// Loosest and densest solid fraction.
@@ -46,11 +46,13 @@ struct Slab {
   [[nodiscard]] double depth() const noexcept { return high - low; }
 };
 
-/// What weight adds to the solid fraction of a bed by pressing its particles into each other.
+/// What weight, and the stress that comes after, add to the solid fraction of a bed by pressing its particles into each
+/// other.
 struct Squeeze {
-  double sample = 0.0;  ///< in the bulk of the sample, on the mean
-  double now = 0.0;     ///< in the slab that is measured
-  double next = 0.0;    ///< in the end, in the layer that is filled in next
+  double sample = 0.0;   ///< in the bulk of the sample, on the mean
+  double ordered = 0.0;  ///< in the same when it has the density that is ordered: with the stress, if under one
+  double now = 0.0;      ///< in the slab that is measured
+  double next = 0.0;     ///< in the end, in the layer that is filled in next
 };
 
 /// The friction that a knob stands for. Local, pure; same bits on any machine.

@@ -322,6 +322,14 @@ void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   e.writing_bytes = std::llround(settling + writing_bytes * own);
 }
 
+// Of a sample whose density holds under stress.
+std::int64_t steps_under_stress(const scene::Scene& sample) {
+  if (sample.in.target->state != input::TargetState::confined) return 0;
+  const scene::Filling filling = scene::expected_filling(sample, scene::expected_fraction(sample).value);
+  const double each = sample.in.particles.density * geometry::volume(3, 1.0) * sample.sizes.curve().moment(3);
+  return confine::expected_steps(sample, filling.height, each * static_cast<double>(filling.particles));
+}
+
 // As if one after the other: ranks share only the first ones.
 void add_search(const scene::Scene& scene, report::Estimate& e) {
   if (!scene.in.target) return;
@@ -331,7 +339,8 @@ void add_search(const scene::Scene& scene, report::Estimate& e) {
   const std::int64_t extremes = scene.in.target->relative_density ? 2 * run::seeds_of_extremes : 0;
   e.search = report::SearchCost{.samples = run::most_trials(sample) + extremes,
                                 .particles = layers * a_layer,
-                                .particle_steps = particle_steps_of(sample.scene, layers, a_layer)};
+                                .particle_steps = particle_steps_of(sample.scene, layers, a_layer) +
+                                                  layers * a_layer * steps_under_stress(sample.scene)};
 }
 
 void add_probe(const comm::Comm& comm, const scene::Scene& scene, report::Estimate& e) {

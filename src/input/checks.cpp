@@ -338,6 +338,10 @@ void check_target(const Case& scene) {
                  "layers.duration = 0 is insertion alone, whose density is layers.fraction; remove one of them");
   if (in.start)
     scene.refuse("target", "how the layers of start.pack were filled in is not known; remove [target] or [start]");
+  if (target.state == TargetState::confined && !in.confinement) {
+    scene.refuse("target.state",
+                 "\"confined\" is a density under the stress of [confinement], which is not there; add it");
+  }
   if (in.contact.tangential == Tangential::sliding) {
     scene.refuse("contact.tangential",
                  "\"sliding\" friction has no memory, and density hardly depends on it; use \"mindlin\" with a target "

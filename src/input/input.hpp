@@ -138,13 +138,17 @@ struct Start {           ///< from a pack that is there
 /// to come to rest.
 inline constexpr double least_filling_friction = 1e-3;
 
+/// When a target's density holds: before [confinement], or under its stress.
+enum class TargetState { filled, confined };
+
 /// The density that the bulk of the pack is to have; exactly one of the first four is given.
 struct Target {
   std::optional<double> solid_fraction, porosity, void_ratio;  ///< [-]
   std::optional<double> relative_density;  ///< [-] (e_max - e) / (e_max - e_min), the limits being this scene's own
-  double tolerance = 0.0;                  ///< [-] in solid fraction
-  double most_friction = 0.0;              ///< [-] between particles while layers are filled in
-  double most_rolling_friction = 0.0;      ///< [-] likewise
+  TargetState state = TargetState::filled;
+  double tolerance = 0.0;              ///< [-] in solid fraction
+  double most_friction = 0.0;          ///< [-] between particles while layers are filled in
+  double most_rolling_friction = 0.0;  ///< [-] likewise
 };
 
 /// The stress [Pa] that the finished pack is brought to, compression positive. `isotropic`, or `vertical` with or

@@ -357,6 +357,8 @@ std::vector<Key> target_keys() {
     when(targeted, real("target.void_ratio", wish(&Target::void_ratio), plain, above(0), "auto", "The same as void ratio e = (1 - phi) / phi.")),
     when(targeted, real("target.relative_density", wish(&Target::relative_density), ratio, between(0, 1), "auto",
          "The same as (e_max - e) / (e_max - e_min), between the loosest and the densest state that `packmpi limits` finds of this scene.")),
+    when(targeted, word("target.state", wish(&Target::state), "filled",
+         "When the density holds: \"filled\", before [confinement], if there is one; \"confined\", under its stress, and samples are brought to it, too.")),
     when(targeted, real("target.tolerance", wish(&Target::tolerance), plain, above(0), "0.002", "What the bulk may differ by, in solid fraction, whichever was given.")),
     when(targeted, real("target.most_friction", wish(&Target::most_friction), plain, at_least(0), "=contact.friction",
          "The most friction between particles while layers are filled in; walls, rolling and twisting scale with it, the last two up to the scene's own. The final relaxation has the scene's own.")),

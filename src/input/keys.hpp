@@ -21,10 +21,11 @@ using tables::acceleration, tables::angular_velocity, tables::density, tables::d
     tables::plain, tables::pressure, tables::Quantity, tables::ratio, tables::time, tables::velocity;
 
 /// Where a key's value goes. Its type decides what the file may say.
-using Slot = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
-                          Vec3*, std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*,
-                          SizeDistribution*, Weighting*, ListOrder*, Interpolation*, HeightRule*, RegionRule*,
-                          FrictionVelocity*, Tangential*, Regularisation*, WallStiffness*, StopRule*, Decomposition*>;
+using Slot =
+    std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*, Vec3*,
+                 std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*, SizeDistribution*,
+                 Weighting*, ListOrder*, Interpolation*, HeightRule*, RegionRule*, FrictionVelocity*, Tangential*,
+                 Regularisation*, WallStiffness*, StopRule*, TargetState*, Decomposition*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {

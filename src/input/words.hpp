@@ -36,6 +36,8 @@ inline constexpr std::array<std::string_view, 2> words_of<WallStiffness>{"rigid"
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<StopRule>{"duration", "settled"};
 template <>
+inline constexpr std::array<std::string_view, 2> words_of<TargetState>{"filled", "confined"};
+template <>
 inline constexpr std::array<std::string_view, 3> words_of<Decomposition>{"slab", "pencil", "metis"};
 
 /// The word a scene file uses for `value`.

@@ -34,6 +34,7 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
     fields.push_back({"target_density_key", "", r.density.key});
     fields.push_back({"target_phi_bulk", "-", r.density.fraction});
     fields.push_back({"target_tolerance", "-", r.density.tolerance});
+    fields.push_back({"target_state", "", std::string(r.density.confined ? "confined" : "filled")});
   }
   if (r.confined.on) {
     fields.push_back({"target_vertical_stress", "Pa", r.confined.vertical});

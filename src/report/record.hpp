@@ -66,6 +66,7 @@ struct Criterion {
 struct DensityTarget {
   std::string key;                                 ///< that named it; "": no target
   double fraction = 0.0, tolerance = 0.0;          ///< [-] solid fraction of the bulk
+  bool confined = false;                           ///< it holds under the stress of [confinement]
   std::vector<double> friction, rolling_friction;  ///< [-] of each layer while it settled
   /// [-] solid fraction of the buried part of the bed after each layer; 0: nothing was buried deep enough
   std::vector<double> buried;

@@ -30,15 +30,15 @@ void list_density(Buffer& out, const RunRecord& r) {
   line(out, "solid fraction below the target height, phi", asked ? number(r.target_fraction) : "", number(r.phi));
   line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
   line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
-  const auto wanted = [&](double (*words)(double)) {
-    return r.density.on() ? number(words(r.density.fraction)) : std::string();
-  };
+  const bool here = r.density.on() && (!r.confined.on || r.density.confined);
+  const auto wanted = [&](double (*words)(double)) { return here ? number(words(r.density.fraction)) : std::string(); };
   line(out, "solid fraction in the bulk, phi_bulk", wanted([](double phi) { return phi; }), number(r.phi_bulk));
   line(out, "porosity in the bulk", wanted(porosity), number(porosity(r.phi_bulk)));
   line(out, "void ratio in the bulk", wanted(void_ratio), number(void_ratio(r.phi_bulk)));
 }
 
-void list_stress(Buffer& out, const confine::Outcome& c) {
+void list_stress(Buffer& out, const RunRecord& r) {
+  const confine::Outcome& c = r.confined;
   if (!c.on) return;
   const std::string lateral = c.lateral > 0.0 ? number(c.lateral) : "";
   line(out, "height of the lid [m]", "", number(c.lid));
@@ -50,7 +50,9 @@ void list_stress(Buffer& out, const confine::Outcome& c) {
       line(out, fmt::format("stress on the wall {} [Pa]", "xy"[a]), lateral, number(c.on_sides[a]));
   }
   line(out, c.lateral > 0.0 ? "lateral over vertical stress" : "lateral over vertical stress, K0", "", number(c.ratio));
-  line(out, "solid fraction in the bulk before the lid", "", number(c.phi_before));
+  const bool wanted = r.density.on() && !r.density.confined;
+  line(out, "solid fraction in the bulk before the lid", wanted ? number(r.density.fraction) : "",
+       number(c.phi_before));
 }
 
 /// The middle column has targets only.
@@ -62,7 +64,7 @@ void compare(Buffer& out, const RunRecord& r) {
   line(out, "height [m]", by_height ? number(r.target_height) : "", number(r.height));
   line(out, "highest top [m]", "", number(r.top));
   list_density(out, r);
-  list_stress(out, r.confined);
+  list_stress(out, r);
   line(out, "compaction rate left, d phi_bulk / dt [1/s]", "", number(r.compaction_rate));
   line(out, "mean radius [m]", number(r.target_mean_radius), number(r.mean_radius));
   line(out, "standard deviation of the radius [m]", number(r.target_sd_radius), number(r.sd_radius));

@@ -48,6 +48,7 @@ report::DensityTarget density_target(const Bed& bed) {
   report::DensityTarget target{.key = target_key(*bed.scene.in.target),
                                .fraction = filling.target,
                                .tolerance = bed.scene.in.target->tolerance,
+                               .confined = bed.scene.in.target->state == input::TargetState::confined,
                                .friction = {},
                                .rolling_friction = {},
                                .buried = filling.layer_fractions};

@@ -46,10 +46,11 @@ std::vector<Trial> try_knobs(const comm::Comm& comm, const Sample& sample, const
   for (const Trial& trial : trials) {
     const scene::Friction friction = control::friction_of(sample.scene.in, trial.knob);
     log::info(fmt::format(
-        "target: friction while filling {:.4g}{} gives solid fraction {:.4f} ({:.4f} before the final "
+        "target: friction while filling {:.4g}{} gives solid fraction {:.4f}{} ({:.4f} before the final "
         "relaxation), contacts {:.2f}",
         friction.particles, sample.scene.features.rolling ? fmt::format(", rolling {:.3g}", friction.rolling) : "",
-        trial.relaxed, trial.filled, trial.coordination));
+        trial.relaxed, sample.scene.in.target->state == input::TargetState::confined ? " under its stress" : "",
+        trial.filled, trial.coordination));
   }
   return trials;
 }

@@ -111,6 +111,38 @@ TEST_F(Target, StopsAndGoesOnToTheSameBits) {
   }
 }
 
+// A density under stress: what is judged, and what samples are tried for; the same bits after a stop under the lid.
+TEST_F(Target, UnderItsStressIsMetThereAndNotBefore) {
+  changes_ = {"target.state=\"confined\"",       "target.solid_fraction=0.63", "target.tolerance=0.004",
+              "confinement.vertical=\"20 kPa\"", "rest.mean_overlap=0.05",     "rest.worst_overlap=0.3"};
+  const report::RunRecord record = make_pack(comm_, scene(), options("under"));
+  EXPECT_NEAR(record.phi_bulk, 0.63, 0.004) << report::missed_words(record, "; ");
+  EXPECT_LT(record.confined.phi_before, record.phi_bulk - 0.01);
+  for (const std::string& missed : record.missed) EXPECT_EQ(missed.find("target."), std::string::npos) << missed;
+  Options stopped = options("stopped", record.steps - 50);
+  EXPECT_THROW((void)make_pack(comm_, scene(), stopped), Error);
+  stopped.max_steps = 0;
+  stopped.restart = "auto";
+  (void)make_pack(comm_, scene(), stopped);
+  expect_same(pack("under"), pack("stopped"));
+  if (comm_.rank() == 0) (void)make_pack(comm::Comm(MPI_COMM_SELF), scene(), options("alone"));
+  expect_same(pack("under"), pack("alone"));
+}
+
+// The stress presses a sample and a bed alike, so that what is left to foresee is the weight.
+TEST_F(Target, ForeseesWhatAStressAddsToTheDensity) {
+  changes_ = {"container.size=[0.5, 0.5, 0.5]", "confinement.vertical=\"20 kPa\"", "rest.mean_overlap=0.05"};
+  const control::Squeeze before = squeeze_of(scene(), 0.0, {});
+  changes_.emplace_back("target.state=\"confined\"");
+  const control::Squeeze under = squeeze_of(scene(), 0.0, {});
+  EXPECT_EQ(before.ordered, before.sample);
+  EXPECT_EQ(under.sample, before.sample);
+  EXPECT_GT(under.ordered, 5.0 * before.ordered);
+  // Overlaps go with (stress + weight)^(2/3): what the sample tells of both gives the bed's.
+  const double weight = std::pow(before.sample, 1.5), stress = std::pow(under.ordered, 1.5) - weight;
+  EXPECT_NEAR(under.next, std::pow(stress + std::pow(before.next, 1.5), 2.0 / 3.0), 1e-12);
+}
+
 TEST_F(Target, WhatCannotBeIsRefusedWithBothLimitsBeforeAnythingIsWritten) {
   changes_ = {"target.solid_fraction=0.72"};
   try {
