@@ -46,6 +46,8 @@ COMMANDS = {
     "packmpi check input/confined.toml": "",
     "packmpi estimate input/confined.toml --no-probe": "",
     "packmpi input/confined.toml -o specimen": "--set container.size=[0.08,0.08,0.03] --quiet",
+    "packmpi input/confined.toml --set target.solid_fraction=0.62 -o filled": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
+    "packmpi input/confined.toml --set target.solid_fraction=0.62 --set 'target.state=\"confined\"' -o under": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi convert specimen/confined.hdf --to lammps": "",
     "lmp -in specimen/confined.lammps.in -var data specimen/confined.lammps.data -var steps 10000": ("-var steps 10000", "-var steps 10 -var holding 10 -screen none"),
     "packmpi analyze quickstart.hdf": "",
