@@ -19,7 +19,7 @@ except ImportError as error:
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "python"
 sys.path.insert(0, str(FOLDER))
 
-from packmpi import Pack, Problem, __main__ as command, sizes, units  # noqa: E402
+from packmpi import Pack, Problem, __main__ as command, render, sizes, units  # noqa: E402
 
 
 def make_pack(path, **attributes):
@@ -98,6 +98,24 @@ class Packs(unittest.TestCase):
             file.attrs["format"] = "packmpi-pack"
         with self.assertRaisesRegex(Problem, "is incomplete"):
             Pack(self.path)
+
+
+class Pictures(unittest.TestCase):
+    def test_no_caption_is_cut_off(self):
+        """In a picture of any width, and nothing of it is left out."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "two.hdf"
+            make_pack(path, reached=1)
+            pack = Pack(path)
+        lines = []
+        for pixels in (100, 250, 400, 1000):
+            words = render.Caption(pack, pixels)
+            self.assertLessEqual(max(render.width_of(line, words.points) for line in words.lines), pixels - 24, pixels)
+            self.assertEqual(sorted(",  ".join(words.lines).split(",  ")), sorted(render.caption(pack)))
+            self.assertGreater(words.height, len(words.lines) * words.points * 100 / 72)
+            lines.append(len(words.lines))
+        self.assertEqual(lines[-1], 1)
+        self.assertGreater(lines[1], 1)
 
 
 class Sizes(unittest.TestCase):

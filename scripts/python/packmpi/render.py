@@ -22,6 +22,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.textpath import TextPath  # noqa: E402
 
 from .problem import Problem  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
@@ -102,10 +103,40 @@ def container_size(pack: Pack) -> str:
     return " x ".join(f"{scale * length:g}" if pack.lid is None else f"{scale * length:.4g}" for length in lengths) + f" {unit}"
 
 
-def caption(pack: Pack) -> str:
-    """What stands above a picture."""
-    return (f"{pack.count:,} {pack.noun} in {container_size(pack)},  "
-            rf"$\phi$ = {pack.phi:.3f},  $\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}  ($n$ = {pack.porosity_bulk:.3f}, $e$ = {pack.void_ratio_bulk:.3f})")
+def caption(pack: Pack) -> list[str]:
+    """What stands above a picture, in pieces that are not broken."""
+    return [f"{pack.count:,} {pack.noun} in {container_size(pack)}", rf"$\phi$ = {pack.phi:.3f}", rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}",
+            f"$n$ = {pack.porosity_bulk:.3f}", f"$e$ = {pack.void_ratio_bulk:.3f}"]
+
+
+CAPTION_POINTS = 11.0
+
+
+class Caption:
+    """The caption of a picture `pixels` wide at 100 dpi, in as many lines as it takes, smaller if one piece alone is wider."""
+
+    def __init__(self, pack: Pack, pixels: int, rim: int = 12) -> None:
+        pieces, between = caption(pack), ",  "
+        room = pixels - 2 * rim
+        self.points = CAPTION_POINTS * min(1.0, room / max(width_of(piece + between, CAPTION_POINTS) for piece in pieces))
+        self.lines = [pieces[0]]
+        for piece in pieces[1:]:
+            if width_of(self.lines[-1] + between + piece + between, self.points) <= room:
+                self.lines[-1] += between + piece
+            else:
+                self.lines.append(piece)
+        self.rim = rim
+        self.height = round(10 + 1.75 * self.points * len(self.lines)) + 4   # pixels
+
+    def draw(self, figure: Figure) -> None:
+        """At the head of the figure."""
+        across, up = figure.get_size_inches() * figure.dpi
+        figure.text(self.rim / across, 1.0 - 9 / up, "\n".join(self.lines), va="top", fontsize=self.points, linespacing=1.15, color=INK)
+
+
+def width_of(words: str, points: float) -> float:
+    """Of a line of text, in pixels at 100 dpi."""
+    return TextPath((0.0, 0.0), words, size=points).get_extents().width * 100.0 / 72.0
 
 
 def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int) -> None:
@@ -113,8 +144,10 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     from . import render_3d  # VTK is needed for this only
     image = render_3d.image_3d(pack, colouring.rgba(), pixels)
     height, width = image.shape[:2]
-    dpi, strip, head = 100, 110, 34  # pixels for the colour bar at the right and the caption above
-    width_all = max(width + strip, 560)  # a tall pack is narrow; its caption is not
+    dpi, strip = 100, 110  # pixels for the colour bar at the right
+    width_all = max(width + strip, 400)  # a tall pack is narrow; its caption is not
+    words = Caption(pack, width_all)
+    head = words.height
     figure = plt.figure(figsize=(width_all / dpi, (height + head) / dpi), dpi=dpi)
     across, up = width_all, height + head
     left = (width_all - width - strip) // 2
@@ -122,7 +155,7 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     axes.imshow(image, interpolation="none")
     axes.axis("off")
     colouring.bar(figure, figure.add_axes([(left + width + 22) / across, 0.14, 16 / across, 0.66]))
-    figure.text(12 / across, 1.0 - 10 / up, caption(pack), va="top", fontsize=11, color=INK)
+    words.draw(figure)
     figure.text(12 / across, 8 / up, "red: target height" if pack.lid is None else LID_WORDS, fontsize=9, color=LID if pack.lid is not None else TARGET)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
     plt.close(figure)
@@ -149,8 +182,9 @@ def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     dpi, strip, rim = 100, 1.15, 0.30  # inches for the colour bar and around the picture
     inches = pixels / dpi - strip - rim
     high = inches * top / width
-    figure = plt.figure(figsize=(pixels / dpi, high + 2.2 * rim), dpi=dpi)
-    across, up = pixels / dpi, high + 2.2 * rim
+    words = Caption(pack, pixels, round(rim * dpi))
+    across, up = pixels / dpi, high + 1.1 * rim + words.height / dpi
+    figure = plt.figure(figsize=(across, up), dpi=dpi)
     axes = figure.add_axes([rim / across, rim / up, inches / across, high / up])
     diameter = 2.0 * pack.radius
     show = chains and pack.pairs is not None and len(pack.pairs) > 0
@@ -173,7 +207,7 @@ def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     axes.axis("off")
     bar = [1.0 - (strip - 0.22) / across, (rim + 0.08 * high) / up, 0.16 / across, 0.84 * high / up]
     colouring.bar(figure, figure.add_axes(bar))
-    figure.text(rim / across, 1.0 - 0.1 / up, caption(pack), va="top", fontsize=11, color=INK)
+    words.draw(figure)
     figure.text(rim / across, 0.08 / up, note, fontsize=9, color=TARGET if pack.lid is None else LID)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
     plt.close(figure)

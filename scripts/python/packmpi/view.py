@@ -75,7 +75,7 @@ def view(pack: Pack) -> str:
 <label class="cut">at <input type="range" min="0" max="1000" value="1000" aria-label="where the pack is cut"></label>
 <button type="button">Reset</button>
 </div>
-<figcaption>Drag to turn, wheel or two fingers to zoom, right button or two fingers to move. Along y it is cut from the front.</figcaption></figure>
+<figcaption>Drag to turn; wheel or two fingers to zoom; right button or two fingers to move. A cut takes away what lies to its right (x), in front of it (y) or above it (z).</figcaption></figure>
 <script type="application/json" id="view-about">{json.dumps(about)}</script>
 {"".join(data)}
 <script>{SCRIPT.read_text(encoding="utf-8")}</script>"""
