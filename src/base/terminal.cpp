@@ -16,12 +16,16 @@ int print_failure = 0;
 
 }  // namespace
 
-bool stdout_is_terminal() {
-  if (isatty(STDOUT_FILENO) == 0) return false;
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) return true;
+bool stderr_is_terminal() {
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) return isatty(STDERR_FILENO) != 0;
   std::error_code unknown;
-  const auto target = std::filesystem::read_symlink("/proc/" + std::to_string(getppid()) + "/fd/1", unknown);
+  const auto target = std::filesystem::read_symlink("/proc/" + std::to_string(getppid()) + "/fd/2", unknown);
   return !unknown && (target.string().starts_with("/dev/pts/") || target.string().starts_with("/dev/tty"));
+}
+
+void note(std::string_view text) noexcept {
+  (void)std::fwrite(text.data(), 1, text.size(), stderr);  // as spdlog does
+  (void)std::fflush(stderr);
 }
 
 // Not through stdio: it would keep what it could not write, and whoever flushes it at the end would fail again.

@@ -4,10 +4,12 @@
 
 namespace packmpi {
 
-/// True if what this process prints on stdout reaches a terminal. Under mpirun a rank's stdout is always a
-/// pseudo-terminal of mpirun's making, so there the launcher's own stdout is looked at too (Linux /proc; unknown counts
-/// as no). Local.
-[[nodiscard]] bool stdout_is_terminal();
+/// True if what this process says on stderr reaches a terminal. Under mpirun a rank's stderr is a pipe, so there the
+/// launcher's own is looked at (Linux /proc; unknown counts as no). Local.
+[[nodiscard]] bool stderr_is_terminal();
+
+/// Writes `text` to stderr at once, where the log goes, too: so both come in order. Failures are nobody's. Local.
+void note(std::string_view text) noexcept;
 
 /// Writes `text` to stdout at once. What cannot be written is dropped, so that no run ends for it; stdout_failure()
 /// remembers. Local.

@@ -125,7 +125,10 @@ constexpr std::array<std::string_view, 2> trims{"drop", "cut"};  // exporters::T
 
 std::string lines(const std::vector<EndWords>& table) {
   std::string text;
-  for (const EndWords& line : table) text += fmt::format("  {:<28}{}\n", line.term, line.text);
+  for (const EndWords& line : table) {  // a term that fills its column stands on a line of its own
+    const std::string_view wide = line.term.size() < 28 ? "" : "\n                              ";
+    text += fmt::format("  {:<28}{}{}\n", line.term, wide, line.text);
+  }
   return text;
 }
 

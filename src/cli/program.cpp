@@ -66,6 +66,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
     }
     words += fmt::format("# fidelity = \"{}\":\n", scene.in.fidelity);
     for (const std::string& line : input::preset_in_use(scene.in)) words += fmt::format("#   {}\n", line);
+    if (const std::string note = forecast::preset_note(scene); !note.empty()) words += fmt::format("# {}\n", note);
     print(words);
   }
   return 0;
@@ -82,9 +83,14 @@ int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& 
   const report::RunRecord record = run::make_pack(comm, scene, options);
   const bool met = record.targets_met;
   if (comm.rank() == 0) {
-    print(report::to_table(record) + "\n");
     log::info(fmt::format("{} in {}", met ? "done" : "finished, but a target was missed",
                           text::duration(record.wall_seconds)));
+    if (options.verbosity == log::Verbosity::verbose) print(report::to_table(record) + "\n");
+    const run::Files files = run::files_of(record.name, options);
+    std::vector<std::string> written;
+    for (const std::string& file : {files.pack, files.summary, files.log, files.steps, files.analysis})
+      if (run::is_there(file)) written.push_back(file);
+    print(report::to_lines(record, written));
   }
   return static_cast<int>(met ? ExitCode::done : ExitCode::target_missed);
 }
@@ -131,8 +137,8 @@ int use_scene(const comm::Comm& comm, const Request& request) {
     for (const std::string& words : forecast::warnings_of(scene)) log::warn(words);
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     if (request.command == Command::run) {
-      for (const std::string& words : forecast::notes_of(scene, comm.size(), on_machine, cores))
-        log::info("note: " + words);
+      for (const std::string& words : forecast::notes_of(scene, comm.size(), on_machine, cores)) log::warn(words);
+      if (const std::string words = forecast::preset_note(scene); !words.empty()) log::info(words);
     }
   }
   return request.command == Command::check ? check(comm, scene) : make(comm, scene, request.run);

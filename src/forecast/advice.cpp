@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forecast/estimate.hpp"
+#include "input/fidelity.hpp"
 #include "run/settle.hpp"
 
 namespace packmpi::forecast {
@@ -95,6 +97,20 @@ std::vector<std::string> notes_of(const scene::Scene& scene, int ranks, int on_m
                                 particles, ranks, few));
   }
   return notes;
+}
+
+std::string preset_note(const scene::Scene& scene) {
+  if (scene.in.fidelity == "paper") return "";
+  const input::PresetOverrides overrides = input::preset_overrides(scene.in);
+  if (overrides.words.empty()) return "";
+  const auto cost = [](const scene::Scene& s) {
+    const std::int64_t layers = scene::expected_layers(s, scene::expected_fraction(s).value);
+    return static_cast<double>(particle_steps_of(s, layers, scene::particles_a_layer(s)));
+  };
+  std::string keys;
+  for (const std::string& line : overrides.words) keys += (keys.empty() ? "" : ", ") + line;
+  return fmt::format("fidelity = \"{}\" is not all of it, the scene has {}: about {:.2g} times the particle-steps",
+                     scene.in.fidelity, keys, cost(scene) / cost(scene::build(overrides.as_preset)));
 }
 
 std::vector<std::string> warnings_of(const scene::Scene& scene) {

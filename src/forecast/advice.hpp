@@ -15,6 +15,10 @@ namespace packmpi::forecast {
 /// ranks that have little to do. Local, pure.
 [[nodiscard]] std::vector<std::string> notes_of(const scene::Scene& scene, int ranks, int on_machine, int cores);
 
+/// Where the scene's own keys override those of a preset that is not "paper": which, and what that costs in
+/// particle-steps; "" where none does. Local, pure.
+[[nodiscard]] std::string preset_note(const scene::Scene& scene);
+
 /// "the finest 5 % by mass, below 1e-4 m, are 97 % of about 2e+06 particles". Local.
 [[nodiscard]] std::string fines_words(const scene::Fines& fines);
 

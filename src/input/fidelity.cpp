@@ -267,4 +267,17 @@ std::vector<std::string> preset_in_use(Input in) {
   return lines;
 }
 
+PresetOverrides preset_overrides(Input in) {
+  PresetOverrides found{.words = {}, .as_preset = in};
+  if (insertion_alone(in)) return found;
+  for (const PresetValue& entry : preset(in)) {
+    const Key& key = *find_key(entry.path);
+    const std::string here = written(key, in);
+    store(key, parse_value(entry.value, "preset"), found.as_preset);
+    const std::string there = written(key, found.as_preset);
+    if (here != there) found.words.push_back(fmt::format("{} = {} (the preset: {})", entry.path, here, there));
+  }
+  return found;
+}
+
 }  // namespace packmpi::input

@@ -32,4 +32,11 @@ void apply_preset(const Document& document, Input& in);
 /// preset: value)".
 [[nodiscard]] std::vector<std::string> preset_in_use(Input in);
 
+/// Where the scene has another value than its preset.
+struct PresetOverrides {
+  std::vector<std::string> words;  ///< "layers.duration = 1 (the preset: 0.775)"
+  Input as_preset;                 ///< the scene with the preset's values
+};
+[[nodiscard]] PresetOverrides preset_overrides(Input in);
+
 }  // namespace packmpi::input

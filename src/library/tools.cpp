@@ -27,6 +27,7 @@ std::string check_words(const scene::Scene& scene) {
   facts["mean_overlap"] = scene::expected_overlap(scene, scene.in.particles.youngs_modulus);
   facts["restitution"] = input::restitution_of(scene.in.contact.damping_ratio, scene.in.contact.tension_cutoff);
   facts["remarks"] = scene.in.remarks;
+  if (const std::string note = forecast::preset_note(scene); !note.empty()) facts["remarks"].push_back(note);
   facts["warnings"] = forecast::warnings_of(scene);
   return facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }

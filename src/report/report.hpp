@@ -1,6 +1,7 @@
-/// The record as JSON, and as a table on the screen.
+/// The record as JSON, as a table, and in a few lines.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "report/record.hpp"
 
@@ -11,5 +12,8 @@ namespace packmpi::report {
 
 /// "Target versus achieved" and the layers as a plain-text table of at most 100 columns. Local.
 [[nodiscard]] std::string to_table(const RunRecord& record);
+
+/// What a user looks for, in about ten lines, and `files`, the pack first. Lengths in a unit that suits them. Local.
+[[nodiscard]] std::string to_lines(const RunRecord& record, const std::vector<std::string>& files);
 
 }  // namespace packmpi::report

@@ -24,7 +24,7 @@ double usual_fraction(int dimension) { return dimension == 3 ? 0.6 : 0.84; }
 Journal::Journal(Bed& bed, const std::string& steps_path, bool quiet, bool restarted)
     : bed_(bed),
       steps_(bed.comm, steps_path, bed.progress.series, restarted),
-      terminal_(stdout_is_terminal()),
+      terminal_(stderr_is_terminal()),
       quiet_(quiet),
       height_(bed.progress.layers.empty() ? 0.0 : bed.progress.layers.back().height),
       layers_done_(static_cast<int>(bed.progress.layers.size())),
@@ -113,9 +113,9 @@ void Journal::progress(double share, double kinetic_energy, double top) {
       relaxing_ ? "relaxation" : "layer", bed_.progress.first_ids.size(), 100.0 * share,
       bed_.progress.count - bed_.progress.moving_from, top, kinetic_energy, steps / now * 1e-6, text::duration(left));
   if (terminal_) {
-    print(fmt::format("\r{}\033[K", line));
+    note(fmt::format("\r{}\033[K", line));
   } else {
-    print(line + "\n");
+    note(line + "\n");
   }
 }
 
@@ -180,7 +180,7 @@ void Journal::relaxed(double height, double duration) {
 
 // On a terminal the progress line gives way.
 void Journal::tell(const std::string& event, const std::string& line, std::initializer_list<log::Field> fields) const {
-  if (bed_.comm.rank() == 0 && terminal_ && !quiet_) print("\r\033[K");
+  if (bed_.comm.rank() == 0 && terminal_ && !quiet_) note("\r\033[K");
   log::event(event, line, fields);
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "comm/comm.hpp"
 #include "pack/pack.hpp"
@@ -206,6 +207,25 @@ TEST_F(Packings, TellsWhatAFewLinesCost) {
   EXPECT_NE(facts.find("\"most_ranks\""), std::string::npos) << facts;
   const std::string told = estimate(scene_, MPI_COMM_WORLD, {.particles = 200, .ranks = 2, .probe = false});
   EXPECT_NE(told.find("\"particle_steps\""), std::string::npos) << told;
+}
+
+TEST_F(Packings, WhatOverridesAPresetIsTold) {
+  const auto remarks = [&](const std::vector<std::string>& changes) {
+    return nlohmann::json::parse(check(Scene::from_text(text, "a.toml", changes), MPI_COMM_WORLD))["remarks"];
+  };
+  EXPECT_TRUE(remarks({}).empty());  // no preset
+  const std::vector<std::string> as_it_is{"fidelity=balanced", "dynamics.time_step=auto", "layers.duration=0.3"};
+  const auto told = remarks(as_it_is);  // about twice the fall through 0.06 m at 5 m/s2, 0.31 s
+  ASSERT_EQ(told.size(), 1U) << told;
+  EXPECT_THAT(
+      told[0].get<std::string>(),
+      ::testing::StartsWith(
+          "fidelity = \"balanced\" is not all of it, the scene has layers.duration = 0.3 (the preset: 0.31): about "));
+  const auto dearer = remarks({"fidelity=balanced", "layers.duration=3.1"});
+  ASSERT_EQ(dearer.size(), 1U) << dearer;
+  const std::string words = dearer[0];
+  EXPECT_NE(words.find("dynamics.time_step = 1e-04 (the preset: \"auto\")"), std::string::npos) << words;
+  EXPECT_GT(std::stod(words.substr(words.rfind("about ") + 6)), 5.0) << words;  // ten times the duration of layers
 }
 
 }  // namespace

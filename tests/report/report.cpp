@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -135,6 +136,29 @@ TEST_F(Report, TableShowsAskedBesideGot) {
   const auto row = table.substr(table.find("height [m]"));
   EXPECT_NE(row.substr(0, row.find('\n')).find("0.5 "), std::string::npos) << row;
   EXPECT_NE(row.substr(0, row.find('\n')).find("0.51235"), std::string::npos) << row;
+}
+
+TEST_F(Report, LinesSayWhatAUserLooksFor) {
+  RunRecord record = testing::some_record(3, 2);
+  record.missed = {"rest.support: too little", "container.size: too low"};
+  record.stop_reason = "height";
+  const std::string lines = to_lines(record, {"out/bed.hdf", "out/bed.json", "elsewhere/bed.log"});
+  for (const char* words :
+       {"finished; missed: rest.support, container.size\n", "1234567890123 in 1 x 2 x 0.5 m",
+        "  height    512.3 mm; asked 500 mm\n", "porosity n ", "void ratio e ", "ended by height\n",
+        "unbalanced force ", "of the weight borne", "  pack      out/bed.hdf; beside it .json, elsewhere/bed.log\n"}) {
+    EXPECT_NE(lines.find(words), std::string::npos) << words << "\n" << lines;
+  }
+  EXPECT_LE(std::count(lines.begin(), lines.end(), '\n'), 11) << lines;
+  record.missed.clear();
+  record.insertion_alone = true;
+  record.target_min_radius = record.target_max_radius = record.mean_radius = 2e-5;
+  const std::string placed = to_lines(record, {});
+  EXPECT_NE(placed.find("done, all targets met\n"), std::string::npos) << placed;
+  EXPECT_NE(placed.find("  diameter  40 µm\n"), std::string::npos) << placed;
+  for (const char* word : {"rest", "height  ", "contacts", "pack  "}) {
+    EXPECT_EQ(placed.find(word), std::string::npos) << word << "\n" << placed;  // nothing moved, nothing was written
+  }
 }
 
 TEST_F(Report, TextIsWrittenWhole) {

@@ -40,7 +40,7 @@ expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" 
 expect 0 'is valid' check "${tiny[@]}"
 must test -z "$(ls -A)"                                    # nothing was written so far
 
-expect 0 'stopped because +height' "${tiny[@]}" -o out -q
+expect 0 'ended by height' "${tiny[@]}" -o out -q
 for file in quickstart.hdf quickstart.json quickstart.log quickstart.steps.csv; do must test -s out/$file; done
 must test -z "$(find out -name '*.tmp*')"
 before=$(md5sum out/*)

@@ -49,9 +49,11 @@ def check(what, truth, text=""):
 
 
 def ours(text):
-    """Lines of stderr that are not Open MPI's: it frames its own, or begins them with host and process."""
+    """Lines of stderr that are not Open MPI's: it frames its own, or begins them with host and process. A warning of small scenes and few
+    cores, before the work, is no error."""
     text = re.sub(r"^-{20,}\n.*?^-{20,}\n", "", text, flags=re.MULTILINE | re.DOTALL)
-    return [line for line in text.splitlines() if line.strip() and not re.match(r"\[[\w.-]+:\d+\]|Primary job|a non-zero exit", line)]
+    return [line for line in text.splitlines() if line.strip() and
+            not re.match(r"\[[\w.-]+:\d+\]|Primary job|a non-zero exit|[\d:]{8} W (about \d+ particles|\d+ ranks share)", line)]
 
 
 def run(words, *, seconds=60, **options):
