@@ -1,12 +1,16 @@
 #!/usr/bin/env bash
-# Builds the documentation as a site, build/site/index.html. A broken link, a page that is not on the site, and a formula whose
-# asterisks were taken for emphasis are errors.
+# Builds the documentation as a site, build/site/index.html. A broken link, also of README, a page that is not on the site or not in
+# its index, and a formula whose asterisks were taken for emphasis are errors.
 # usage: scripts/dev/site.sh [folder]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 "$root/scripts/setup.sh" --site
 for page in "$root"/doc/*.md; do
   grep -q "\b$(basename "$page")$" "$root/scripts/dev/site.yml" || { echo "site: $(basename "$page") is not named in scripts/dev/site.yml" >&2; exit 1; }
+  [[ $page == */index.md ]] || grep -qF "($(basename "$page"))" "$root/doc/index.md" || { echo "site: doc/index.md leads nowhere to $(basename "$page")" >&2; exit 1; }
+done
+for page in $(grep -oE '\]\(doc/[^)#]*' "$root/README.md" | cut -c3-); do   # mkdocs checks those of doc/
+  [[ -e $root/$page ]] || { echo "site: README.md leads to $page, which is not there" >&2; exit 1; }
 done
 built=$(realpath -m "${1:-$root/build/site}")
 mkdocs build --strict --quiet --clean -f "$root/scripts/dev/site.yml" -d "$built"

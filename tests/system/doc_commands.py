@@ -50,6 +50,9 @@ COMMANDS = {
     "packmpi input/confined.toml --set target.solid_fraction=0.62 --set 'target.state=\"confined\"' -o under": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi convert specimen/confined.hdf --to lammps": "",
     "lmp -in specimen/confined.lammps.in -var data specimen/confined.lammps.data -var steps 10000": ("-var steps 10000", "-var steps 10 -var holding 10 -screen none"),
+    "packmpi check input/powder.toml": "",
+    "packmpi estimate input/powder.toml --no-probe": "",
+    "packmpi input/powder.toml -o powder": "--set container.size=[0.0003,0.0003,0.0003] --set rest.wait=0 --set layers.duration=1e-4 --set dynamics.relaxation=0 --set rest.unbalanced_force=1e9 --set rest.kinetic_energy=1e9 --set rest.support=1e9 --quiet",
     "packmpi analyze quickstart.hdf": "",
     "packmpi plot quickstart.hdf": "--only density",
     "packmpi report quickstart.hdf": "--size 150",
@@ -62,7 +65,7 @@ NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
-          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
+          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
 
 problems = []

@@ -48,6 +48,12 @@ def check(page, site):
     expect(all(overflow == "auto" for overflow in boxes), f"a wide table cannot be scrolled: {boxes}")
     links = page.value(f"{SEARCH}('Fabric tensor')")
     expect(any(link.endswith("analyze.html") for link in links), f"a search for 'fabric tensor' finds {links}")
+    page.look(WIDTH, dark=True)
+    page.open((site / "theory.html").as_uri())
+    ink, paper = (page.value(f"getComputedStyle(document.body).{what}.match(/[0-9]+/g).slice(0, 3).reduce((a, b) => a + +b, 0)") for what in ("color", "backgroundColor"))
+    expect(paper < 250 < 300 < ink, f"in the dark the ink is {ink} and the paper {paper}, of 765")
+    page.look(WIDTH)
+    page.open((site / "index.html").as_uri())
     expect(page.value(f"{SEARCH}('no-such-word-anywhere')") == [], "a search for what is not there finds something")
 
 
@@ -59,7 +65,7 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as profile, browser.Browser(profile) as page:
         check(page, site)
-    print("\n".join(problems) or "three pages looked at")
+    print("\n".join(problems) or "five pages looked at")
     return 1 if problems else 0
 
 
