@@ -153,7 +153,10 @@ class Files(unittest.TestCase):
         with self.assertRaises(packmpi.SceneError) as raised:
             packmpi.run(scene)
         self.assertIn("ensemble", str(raised.exception))
-        both = packmpi.ensemble(scene, "both", force=True)
+        told = []
+        both = packmpi.ensemble(scene, "both", force=True, progress=lambda *now: told.append(now))
+        self.assertEqual((told[0], told[-1]), ((0, 2), (2, 2)))
+        self.assertEqual(told, sorted(set(told)))
         self.assertEqual(len(both), 2)
         self.assertEqual([pack.provenance["seed"] for pack in both], [3, 4])
 

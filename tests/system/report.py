@@ -40,7 +40,7 @@ CONTRAST = """(() => {
   }).concat(paper);
 })()"""
 
-PLOTS = {"grading": 6, "periodic_2d": 5}   # both are too small for g(r), discs are of one size
+PLOTS = {"grading": 8, "periodic_2d": 6}   # both are too small for g(r), discs are of one size
 VIEW = """(() => {
   const view = document.getElementById('view');
   const set = (where, value, event) => { const one = view.querySelector(where); one.value = value; one.dispatchEvent(new Event(event)); };

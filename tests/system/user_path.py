@@ -83,7 +83,7 @@ def check_page(folder):
     """It has the pack's count, and as many images as there should be."""
     page = (folder / "gravel.html").read_text()
     drawn = page.count("data:image/svg+xml"), page.count("data:image/png")
-    expect(drawn[0] == 7, f"{drawn[0]} plots on the page")
+    expect(drawn[0] == 9, f"{drawn[0]} plots on the page")
     can_draw = shutil.which("xvfb-run") and subprocess.run([sys.executable, "-c", "import vtk"], capture_output=True).returncode == 0
     expect(drawn[1] == (2 if can_draw else 0), f"{drawn[1]} pictures on the page")
     if not can_draw:

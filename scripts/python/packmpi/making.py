@@ -1,8 +1,10 @@
 """From scenes to packs."""
 import json
 import sys
+import threading
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Callable, NamedTuple, Optional, Union
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Union
 
 from .core import core, number_of
 from .pack import Pack
@@ -95,17 +97,58 @@ class Ensemble:
         return (Pack(path) for path in self.paths)
 
 
+def show_packs(done: int, packs: int) -> None:
+    """A line on stderr, rewritten."""
+    print(f"\r{done} of {packs} packs ", end="\n" if done == packs else "", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def counted(folder: Path, what: Scene, progress: Union[bool, Callable[[int, int], None], None], fresh: bool) -> Iterator[None]:
+    """Meanwhile, whoever wants to know is told how many packs there are. fresh: those that lie there already will be made anew."""
+    if not progress:
+        yield
+        return
+    told = show_packs if progress is True else progress
+    old = {path: path.stat().st_mtime_ns for path in folder.glob(f"{what.name}_*.hdf")} if fresh else {}
+    ended, last = threading.Event(), -1
+
+    def tell() -> None:
+        nonlocal last
+        done = sum(old.get(path) != path.stat().st_mtime_ns for path in folder.glob(f"{what.name}_*.hdf"))
+        if done != last:
+            last = done
+            told(done, what.packs)
+
+    def watch() -> None:
+        while not ended.wait(0.2):
+            tell()
+
+    tell()
+    thread = threading.Thread(target=watch, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+    tell()
+
+
 def ensemble(scene: Union[Scene, Source], folder: Union[str, Path], comm: Optional[Any] = None, *, force: bool = False,
-             restart: str = "", max_hours: float = 0.0) -> Ensemble:
+             restart: str = "", max_hours: float = 0.0, progress: Union[bool, Callable[[int, int], None], None] = None) -> Ensemble:
     """Makes all packs of a scene with an [ensemble], and their tables (doc/ensembles.md). Collective over `comm`.
 
-    Groups of ranks make packs side by side; each pack has the bits that it has when made alone. Parameters as of run(). Raises
-    SceneError or Problem, on all ranks; a pack that fails does not stop the others, but is a Problem in the end.
+    Groups of ranks make packs side by side; each pack has the bits that it has when made alone. Parameters as of run(), but progress: called
+    on rank 0, in a thread of its own, with how many packs are in the folder and how many there will be, whenever that changes; True: one
+    line on stderr. It cannot end the run. Raises SceneError or Problem, on all ranks; a pack that fails does not stop the others, but is a
+    Problem in the end.
     """
     what = ready(scene)
     if what.packs < 2:
         raise Problem(f'{what.file}: one pack is no ensemble; set "ensemble.packs", or call packmpi.run()')
-    code = core().make_ensemble(what.made, number_of(comm), str(folder), force, restart, max_hours)
+    here = number_of(comm)
+    with counted(Path(folder), what, progress if core().rank(here) == 0 else None, fresh=not restart):
+        code = core().make_ensemble(what.made, here, str(folder), force, restart, max_hours)
     if code not in (0, 3):
         raise Problem(f"{folder}: packs of the ensemble failed (code {code}); their logs say why")
     return Ensemble(Path(folder), what.name, code)

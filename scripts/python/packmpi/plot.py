@@ -1,6 +1,6 @@
 """Plots of a pack: density profile, target and achieved sizes, pair distribution, how it settled.
 
-usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density sizes pairs settling] [--program packmpi]
+usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density lateral segregation sizes ...] [--program packmpi]
 
 Writes NAME.density.png and so on beside the pack, or in FOLDER. The numbers are those of `packmpi analyze`, which is run
 first if NAME.analysis.json is older than the pack or not there; the history is NAME.steps.csv, and is left out if that is not
@@ -58,6 +58,40 @@ def density(pack: Pack, analysis: dict[str, Any]) -> Figure:
     axes.annotate("target height", (target, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
                   va="bottom", color=TARGET, fontsize=8.5)
     axes.set(xlabel=f"height [{unit}]", ylabel="solid fraction", xlim=(0.0, max(edges[-1], 1.02 * target)), ylim=(0.0, None))
+    return figure
+
+
+def lateral(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Solid fraction of the bulk across it, from one side to the other; None where the analysis has none."""
+    profiles = {axis: analysis["density_profile"][axis] for axis in "xy"[:pack.dimension - 1] if axis in analysis["density_profile"]}
+    if not profiles:
+        return None
+    figure, axes = new_figure()
+    scale, unit = length_unit(pack.size[0])
+    for (axis, profile), colour in zip(profiles.items(), (ACHIEVED, OTHER)):
+        edges, values = staircase(profile)
+        axes.stairs(values, scale * edges, color=colour, linewidth=1.5, baseline=None, label=f"along {axis}")
+    axes.axhline(pack.phi_bulk, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label=r"$\phi_\mathrm{bulk}$")
+    legend_above(axes)
+    axes.set(xlabel=f"place between the sides [{unit}]", ylabel="solid fraction", ylim=(0.0, None))
+    return figure
+
+
+def segregation(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Mean radius over the height, beside that of all; None if all radii are equal, or there are too few slabs."""
+    if np.ptp(pack.radius) == 0.0:
+        return None
+    edges, values = staircase(analysis["segregation"]["mean_radius"])
+    if np.count_nonzero(values) < 2:
+        return None
+    figure, axes = new_figure()
+    scale, unit = length_unit(pack.size[-1])
+    size_scale, size_unit = length_unit(float(pack.radius.max()))
+    axes.stairs(size_scale * np.where(values > 0.0, values, np.nan), scale * edges, color=ACHIEVED, linewidth=1.5, baseline=None, label="in a slab")
+    axes.axhline(size_scale * float(pack.radius.mean()), color=INK, linewidth=1.0, linestyle=(0, (4, 3)),
+                 label=f"of all; correlation with height {analysis['segregation']['correlation']:+.3f}")
+    legend_above(axes)
+    axes.set(xlabel=f"height [{unit}]", ylabel=f"mean radius [{size_unit}]", ylim=(0.0, None))
     return figure
 
 
@@ -199,7 +233,7 @@ def rose(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
     return figure
 
 
-PLOTS = {"density": density, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
+PLOTS = {"density": density, "lateral": lateral, "segregation": segregation, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
          "settling": settling}
 
 

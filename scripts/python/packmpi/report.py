@@ -131,6 +131,8 @@ def pictures(pack: Pack, folder: Path, pixels: int) -> str:
 
 CAPTIONS = {
     "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
+    "lateral": "Solid fraction of the bulk from one side to the other; flat walls order the nearest layers, and the profile swings there.",
+    "segregation": "Mean radius over the height: level where sizes are not sorted by it. Steps beyond chance need many particles in a slab.",
     "sizes": "Target sizes (dashed) and achieved ones, as sieves would show them.",
     "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
     "coordination": "How many others a particle touches; walls are not counted.",
@@ -139,7 +141,7 @@ CAPTIONS = {
     "settling": "How the layers settled; energies are those of the particles that move."}
 
 MISSING = {
-    "density": "No density profile.", "sizes": "All radii are equal: no size curves.",
+    "density": "No density profile.", "lateral": "No lateral profile.", "segregation": "All radii are equal, or the pack is too low: no profile of sizes.", "sizes": "All radii are equal: no size curves.",
     "pairs": "The pack is too small for a pair distribution.",
     "coordination": "No particle touches another.", "forces": "Too few contacts for a distribution of forces.",
     "rose": "No contact orientations: the pack was written without output.contacts = true, or has too few contacts.",
