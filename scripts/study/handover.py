@@ -4,10 +4,12 @@ a table in doc/rest.md, doc/data/handover.csv.
 
 usage: scripts/study/handover.py [--steps 10000] [--scenes walls powder graded] [--codes lammps liggghts yade] [--set KEY=VALUE ...]
 
-Sinking: loss of phi_bulk, less than zero for a pack that rises; displacement: of the sphere that moved farthest, in mean diameters, and the mean. Kinetic
-energy, of translation, is looked at every hundredth of the steps. Ten minutes of one core, YADE most of it.
+Packs are made twice: at rest by the usual limits of [rest], by which a single loose sphere may still roll, and by HANDED, by which none does. Sinking: loss of
+phi_bulk, less than zero for a pack that rises; displacement: of the sphere that moved farthest, in mean diameters, and the mean. Kinetic energy, of
+translation, is looked at every hundredth of the steps. Twenty minutes of one core, YADE most of it.
 """
 import argparse
+import csv
 import re
 import shutil
 import sys
@@ -28,8 +30,11 @@ SCENES = {
                               "dynamics.time_step": "1e-5"}),
     "graded": ("paper_5_4", {"container.size": "[0.4,0.4,0.4]", "container.boundary": '["periodic","periodic"]', "fidelity": "balanced"}),
 }
+SCENES["confined"] = ("confined", {"container.size": "[0.08,0.08,0.08]", "confinement": '{vertical="100 kPa"}'})
+# To be handed over: nothing moves any more.
+HANDED = {"rest.kinetic_energy": "1e-10", "rest.unbalanced_force": "1e-4"}
 CODES = ("lammps", "liggghts", "yade")
-COLUMNS = ["scene", "code", "spheres", "steps", "phi_bulk", "sinking", "largest_displacement", "mean_displacement", "kinetic_first", "kinetic_peak", "kinetic_last",
+COLUMNS = ["scene", "rest", "code", "spheres", "steps", "phi_bulk", "sinking", "largest_displacement", "mean_displacement", "kinetic_first", "kinetic_peak", "kinetic_last",
            "coordination_before", "coordination_after"]
 # Appended to convert's scripts: what the spheres are at the end.
 DUMP = "\nwrite_dump all custom out.dump id x y z radius modify sort id\n"
@@ -55,7 +60,7 @@ def by_lammps(code, folder, script, steps):
     said, _ = run([program, "-in", own.name, "-var", "steps", steps, "-log", f"{code}.log"], folder, folder / f"{code}.said")
     energies = []
     for block in re.findall(r"(?m)^ *Step.*\n((?: *[-+\d].*\n)+)", said):
-        energies += [float(line.split()[2]) for line in block.splitlines() if len(line.split()) == 5]
+        energies += [float(line.split()[2]) for line in block.splitlines() if len(line.split()) >= 5]
     rows = np.array((folder / "out.dump").read_text().split("ITEM: ATOMS")[1].split("\n", 1)[1].split(), float).reshape(-1, 5)
     return rows[:, 1:4], energies
 
@@ -87,9 +92,11 @@ def received(code, folder, path, steps):
             "coordination_after": after["coordination"]}
 
 
-def measure(options, name):
+def measure(options, name, rest):
     file, changes = SCENES[name]
-    folder = options.results / name
+    if rest == "handed":
+        changes = {**changes, **HANDED}
+    folder = options.results / f"{name}_{rest}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     scene = measuring.bare_scene(file, folder, ["regularisation"]) if file.startswith("paper") else measuring.ROOT / f"input/{file}.toml"
@@ -99,17 +106,27 @@ def measure(options, name):
     rows = []
     for code in options.codes:
         run([options.program, "convert", path, "--to", code], folder, folder / "convert.said")
-        row = {"scene": name, "code": code, **received(code, folder, path, options.steps)}
+        row = {"scene": name, "rest": rest, "code": code, **received(code, folder, path, options.steps)}
         rows.append({key: f"{value:.5g}" if isinstance(value, float) else value for key, value in row.items()})
         print(", ".join(f"{key} {value}" for key, value in rows[-1].items()), flush=True)
     return rows
 
 
+def with_kept(path, rows):
+    """These rows and, of other scenes, limits and codes, those of before, in the order of a whole run."""
+    def key(row):
+        return row.get("rest") or "usual", row["scene"], row["code"]
+    before = list(csv.DictReader(path.open())) if path.exists() else []
+    all_of_them = {key(row): {"rest": "usual", **row} for row in [*before, *rows]}
+    order = [(rest, scene, code) for rest in ("usual", "handed") for scene in SCENES for code in CODES]
+    return [all_of_them[one] for one in order if one in all_of_them]
+
+
 def table(rows):
     names = {"lammps": "LAMMPS", "liggghts": "LIGGGHTS", "yade": "YADE"}
-    out = ["| scene, spheres | in | sinking of phi_bulk | largest, mean displacement / d | KE / (m g d): first, peak, last | coordination |", "|---|---|---|---|---|---|"]
+    out = ["| scene, spheres | at rest by | in | sinking of phi_bulk | largest, mean displacement / d | KE / (m g d): first, peak, last | coordination |", "|---|---|---|---|---|---|---|"]
     for row in rows:
-        out.append(f"| {row['scene']}, {row['spheres']} | {names[row['code']]} | {100.0 * float(row['sinking']):+.3f} % | "
+        out.append(f"| {row['scene']}, {row['spheres']} | {'1e-10, 1e-4' if row['rest'] == 'handed' else 'the usual limits'} | {names[row['code']]} | {100.0 * float(row['sinking']):+.3f} % | "
                    f"{float(row['largest_displacement']):.2g}, {float(row['mean_displacement']):.2g} | {float(row['kinetic_first']):.1e}, "
                    f"{float(row['kinetic_peak']):.1e}, {float(row['kinetic_last']):.1e} | {float(row['coordination_before']):.3f} to "
                    f"{float(row['coordination_after']):.3f} |")
@@ -120,6 +137,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=10000)
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--rest", nargs="+", choices=("usual", "handed"), default=("usual", "handed"), help="by which limits packs are at rest")
     parser.add_argument("--codes", nargs="+", choices=CODES, default=CODES)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes")
     parser.add_argument("--program", type=lambda text: measuring.Path(text).resolve(), default=measuring.ROOT / "build/packmpi")
@@ -129,11 +147,12 @@ def main():
     missing = [program for code, program in zip(CODES, ("lmp", "liggghts", "yade")) if code in options.codes and shutil.which(program) is None]
     if missing:
         sys.exit(f"handover: not installed: {' '.join(missing)}; scripts/setup.sh --peers, or Debian's packages")
-    rows = [row for name in options.scenes for row in measure(options, name)]
+    rows = [row for rest in options.rest for name in options.scenes for row in measure(options, name, rest)]
+    rows = with_kept(options.doc / "data/handover.csv", rows)
     measuring.write_csv(options.doc / "data/handover.csv", COLUMNS, rows)
     print("\n".join(table(rows)))
     if (options.doc / "rest.md").exists():
-        measuring.write_block(options.doc / "rest.md", "handover", "\n".join([f"{measuring.made_by('scripts/study/handover.py')}. {options.steps} steps.", "", *table(rows)]))
+        measuring.write_block(options.doc / "rest.md", "handover", "\n".join([f"{measuring.made_by('scripts/study/handover.py')}. {options.steps} steps; rows are of the runs of that day or before.", "", *table(rows)]))
 
 
 if __name__ == "__main__":

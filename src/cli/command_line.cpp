@@ -310,6 +310,7 @@ std::string mistyped_command(const std::vector<std::string>& words) {
   if (words.empty() || words.front().starts_with('-') || words.front().find_first_of("./") != std::string::npos)
     return "";
   std::vector<std::string> names;
+  names.reserve(declarations.size());
   for (const Declaration& d : declarations) names.emplace_back(d.name);
   if (std::ranges::find(names, words.front()) != names.end()) return "";
   const auto near = text::closest(words.front(), names);

@@ -1,6 +1,8 @@
 """The Python package: sizes by hand, a pack made here, the command line without what it needs. usage: python3 -m unittest"""
 import contextlib
+import hashlib
 import io
+import json
 import os
 import pathlib
 import subprocess
@@ -19,7 +21,7 @@ except ImportError as error:
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "python"
 sys.path.insert(0, str(FOLDER))
 
-from packmpi import Pack, Problem, __main__ as command, render, sizes, units  # noqa: E402
+from packmpi import Pack, Problem, __main__ as command, crate, render, sizes, units  # noqa: E402
 
 
 def make_pack(path, **attributes):
@@ -116,6 +118,31 @@ class Pictures(unittest.TestCase):
             lines.append(len(words.lines))
         self.assertEqual(lines[-1], 1)
         self.assertGreater(lines[1], 1)
+
+
+class Crate(unittest.TestCase):
+    def test_it_names_what_lies_beside_the_pack(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "two.hdf"
+            make_pack(path, coordination=0.0, height=0.3)
+            with h5py.File(path, "a") as file:
+                file["provenance"].attrs.update({"seed": 7, "version": "0.2.0", "git": "abc", "scene_file": "two.toml", "compiler": "c", "architecture": "a"})
+            path.with_suffix(".log").write_text("made\n")
+            (path.parent / "other.log").write_text("of another\n")
+            target = crate.write_record(Pack(path), "CC-BY-4.0")
+            told = {one["@id"]: one for one in json.loads(target.read_text())["@graph"]}
+            self.assertEqual(told["ro-crate-metadata.json"]["conformsTo"], {"@id": "https://w3id.org/ro/crate/1.1"})
+            self.assertEqual(told["./"]["hasPart"], [{"@id": "two.hdf"}, {"@id": "two.log"}])
+            self.assertEqual(told["./"]["license"], {"@id": "https://spdx.org/licenses/CC-BY-4.0"})
+            self.assertEqual(told["two.log"]["sha256"], hashlib.sha256(b"made\n").hexdigest())
+            self.assertEqual((told["two.log"]["contentSize"], told["#porosity-of-the-bulk"]["value"]), ("5", 0.4))
+            links = [part["@id"] for one in told.values() for value in one.values() for part in (value if isinstance(value, list) else [value])
+                     if isinstance(part, dict) and not part["@id"].startswith("https://w3id")]
+            self.assertLessEqual(set(links), set(told))   # nothing is named that is not there
+            crate.write_record(Pack(path), "CC0-1.0")     # its own is replaced
+            path.rename(path.with_name("three.hdf"))
+            with self.assertRaisesRegex(Problem, "the record of other files"):
+                crate.write_record(Pack(path.with_name("three.hdf")), "CC0-1.0")
 
 
 class Sizes(unittest.TestCase):

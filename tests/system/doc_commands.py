@@ -56,6 +56,7 @@ COMMANDS = {
     "packmpi analyze quickstart.hdf": "",
     "packmpi plot quickstart.hdf": "--only density",
     "packmpi report quickstart.hdf": "--size 150",
+    "packmpi report quickstart.hdf --crate CC-BY-4.0": "--size 150",
     "packmpi convert quickstart.hdf --to lammps": "",
     "lmp -in quickstart.lammps.in": "-var steps 2 -screen none",
     "scripts/study/figures.py": "--only 4 --size 200 --images made --set layers.duration=0.01",
@@ -65,7 +66,7 @@ NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
           "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
-          "quickstart.html", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
+          "quickstart.html", "ro-crate-metadata.json", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
 
 problems = []

@@ -1,6 +1,6 @@
 """One page on a pack, for eyes and for an archive: NAME.html, pictures and plots inside, nothing fetched from elsewhere.
 
-usage: packmpi report PACK.hdf [-o page.html] [--program packmpi] [--size pixels]
+usage: packmpi report PACK.hdf [-o page.html] [--program packmpi] [--size pixels] [--crate LICENCE]
 
 Facts, a view to turn and cut, pictures, plots, targets beside what was achieved, protocol, checks and provenance. A picture that cannot be drawn is left
 out, and the page says why. The numbers are those of the pack and of `packmpi analyze`; the history is NAME.steps.csv.
@@ -15,6 +15,7 @@ from typing import Any, Sequence, Union
 import numpy as np
 
 from . import plot
+from .crate import write_record
 from .problem import Problem
 from .pack import Pack
 from .render import container_size, pictures_of
@@ -351,6 +352,7 @@ def main(words: list[str]) -> None:
     parser.add_argument("-o", "--output", type=Path, help="page to write (default: NAME.html beside the pack)")
     parser.add_argument("--program", help="packmpi, to analyze the pack (default: this one)")
     parser.add_argument("--size", type=int, default=700, help="width of the pictures in pixels, about (default 700)")
+    parser.add_argument("--crate", metavar="LICENCE", help="write ro-crate-metadata.json, too: a record of the pack and its files for an archive; an SPDX name (CC-BY-4.0) or an address")
     options = parser.parse_args(words)
     pack = Pack(options.pack)
     if pack.count == 0:
@@ -358,3 +360,5 @@ def main(words: list[str]) -> None:
     path: Path = options.output or pack.path.with_suffix(".html")
     written = write_page(pack, path, program=options.program, pixels=options.size)
     print(f"{path}: {pack.count} particles, {written / 1024:.0f} kB")
+    if options.crate:
+        print(f"{write_record(pack, options.crate)}: a record for an archive (RO-Crate 1.1)")
