@@ -78,15 +78,14 @@ ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const part
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            neighbor::Wall wall, const StoredView& stored, std::int64_t entry) {
-  const geometry::Plane plane = scene.container.plane(wall);
   const double r = store.radius(i);
-  const double distance = plane.distance(store.position(i));
+  const auto [distance, normal, velocity] = scene.container.facing(wall, store.position(i));
   const double k = store.record(i)[store.layout().curvature];
   Vec3 v = store.velocity(i);
-  for (std::size_t a = 0; a < 3; ++a) v[a] = (static_cast<int>(a) == plane.axis ? plane.speed : -0.0) - v[a];
+  for (std::size_t a = 0; a < 3; ++a) v[a] = velocity[a] - v[a];
   const Vector w = vector_of(store.spin(i));
   const Meeting at{plain::reduced_of_wall(law.mass_factor, k, r),
-                   vector_of(plane.normal()),
+                   vector_of(normal),
                    0.0,
                    distance < r ? r - distance : 0.0,
                    vector_of(v),

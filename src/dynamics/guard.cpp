@@ -36,7 +36,7 @@ double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
 
 /// Penetration of a wall over the radius; negative: apart.
 double penetration_of(const Inspected& now, LocalIndex i, neighbor::Wall wall) {
-  const double distance = now.scene.container.plane(wall).distance(now.store.position(i));
+  const double distance = now.scene.container.facing(wall, now.store.position(i)).distance;
   return (now.store.radius(i) - distance) / now.store.radius(i);
 }
 
@@ -91,8 +91,9 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
       touching.emplace_back(-overlap, fmt::format("{}", now.store.ids()[static_cast<std::size_t>(other)]));
     }
   }
-  constexpr std::array<const char*, geometry::most_surfaces> names{"the floor",      "the wall x = 0", "the wall x = L",
-                                                                   "the wall y = 0", "the wall y = B", "the lid"};
+  constexpr std::array<const char*, geometry::most_surfaces> names{
+      "the floor",      "the wall x = 0", "the wall x = L",     "the wall y = 0",
+      "the wall y = B", "the lid",        "the cylinder's wall"};
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const double depth = walls.particle[w] == i ? penetration_of(now, i, walls.wall[w]) : 0.0;

@@ -46,18 +46,18 @@ Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::
 
 Interaction of_wall(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                     neighbor::Wall wall) {
-  const geometry::Plane plane = scene.container.plane(wall);
-  const Vec3 x = store.position(i), v = store.velocity(i);
+  const geometry::Facing at_wall = scene.container.facing(wall, store.position(i));
+  const Vec3 v = store.velocity(i);
   Interaction at{.first = i,
                  .second = -1,
                  .d = {},
                  .v = {-v[0], -v[1], -v[2]},
                  .s = surface_spin(store, i),
-                 .wall_normal = plane.normal(),
+                 .wall_normal = at_wall.normal,
                  .radii = store.radius(i),
                  .reduced_radius = store.radius(i),
                  .reduced_mass = 1.0 / inverse_mass(law, store, i)};
-  at.d[static_cast<std::size_t>(plane.axis)] = plane.sign * plane.distance(x);
+  for (std::size_t a = 0; a < 3; ++a) at.d[a] = at_wall.normal[a] * at_wall.distance + 0.0;  // no -0
   return at;
 }
 

@@ -29,13 +29,19 @@ struct StoredVectors {
 };
 
 /// The walls of a container by their numbers; of those that it has not, too.
-using Planes = std::array<geometry::Plane, geometry::most_surfaces>;
+using Planes = std::array<geometry::Plane, geometry::most_planes>;
 [[nodiscard]] constexpr Planes planes_of(const geometry::Container& container) {
   Planes planes{};
   for (std::size_t number = 0; number < planes.size(); ++number) {
     planes[number] = container.plane(static_cast<geometry::Surface>(number));
   }
   return planes;
+}
+/// The same of its round walls.
+[[nodiscard]] constexpr geometry::RoundWalls round_of(const geometry::Container& container) {
+  geometry::RoundWalls walls{};
+  for (std::size_t k = 0; k < walls.size(); ++k) walls[k] = container.round(k);
+  return walls;
 }
 
 /// Everything a kernel reads and writes. Pointers are not owned. A step may be done in several calls, one for each part
@@ -64,6 +70,7 @@ struct StepData {
   Vec3 size;             ///< [m] container; the period on periodic axes
   std::array<bool, 2> periodic;
   Planes planes;
+  geometry::RoundWalls round = {};
   StoredVectors stored_pairs = {};  ///< of the entries from `first` on
   StoredVectors stored_walls = {};  ///< of the entries from `wall_particle` on
 };

@@ -4,6 +4,18 @@
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
+/// Normal, towards the wall, and distance of entry p of the block: of a round wall, geometry::RoundWall::facing.
+template <Features F>
+PACKMPI_INLINE void put_round(const geometry::RoundWall& wall, Block<F>& b, int p, const double* x) {
+  const double along = x[0] - wall.axis[0], across = x[1] - wall.axis[1];
+  const double rho = root(along * along + across * across + geometry::RoundWall::tiny);
+  const double inverse = 1.0 / rho;
+  b.in[0][p] = along * inverse;
+  b.in[1][p] = across * inverse;
+  if constexpr (F.dimension == 3) b.in[2][p] = 0.0;
+  b.distance[p] = wall.offset - rho;
+}
+
 /// Fill entry p of the block for one particle at one wall: the wall is a second end whose fields are zero, but for its
 /// speed along its axis.
 template <Features F>
@@ -11,12 +23,18 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalInde
   using M = Memory<F>;
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
-  // A copy: the block that is written below cannot alias it.
-  const geometry::Plane plane = data.planes[static_cast<unsigned>(wall)];
   for (int a = 0; a < layout.stride; ++a) {
     b.in[a][p] = M::sign(a, false) != 0 ? -record[a] : record[a];
     if (M::reads(a) > 1) b.again[a][p] = M::sign(a, true) != 0 ? -record[a] : record[a];
   }
+  const auto number = static_cast<unsigned>(wall);
+  // Copies: the block that is written below cannot alias them.
+  if (number >= geometry::most_planes) [[unlikely]] {
+    const geometry::RoundWall round = data.round[number - geometry::most_planes];
+    put_round<F>(round, b, p, record);
+    return;
+  }
+  const geometry::Plane plane = data.planes[number];
   for (int a = 0; a < F.dimension; ++a) b.in[a][p] = a == plane.axis ? plane.sign : 0.0;
   b.in[layout.velocity + plane.axis][p] = plane.speed - record[layout.velocity + plane.axis];
   b.distance[p] = plane.offset - plane.sign * record[plane.axis];

@@ -166,6 +166,7 @@ StepData Stepper::data(particles::Store& store, neighbor::Neighborhood& neighbor
       .size = scene_->container.size,
       .periodic = scene_->container.periodic,
       .planes = planes_of(scene_->container),
+      .round = round_of(scene_->container),
       .stored_pairs = {neighborhood.memory().of_pairs(), std::ssize(pairs.first)},
       .stored_walls = {neighborhood.memory().of_walls(), std::ssize(walls.particle)},
   };

@@ -70,7 +70,14 @@ std::string walls(const Specimen& s) {
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
   const std::string law = contact(s, share, in.contact.wall_friction);
   std::string text;
-  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+  if (s.round()) {
+    text = fmt::format(
+        "# the law of a curved wall is there that of spheres on its curvature: overlaps differ by a share of r / R\n"
+        "region          mantle cylinder z {1} {1} {1} INF INF side in units box\n"
+        "fix             wall_mantle all wall/gran/region granular {0} region mantle\n",
+        law, s.radius());
+  }
+  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;
     text += fmt::format("fix             wall_{0} all wall/gran granular {1} {0}plane 0 {2}\n", "xyz"[axis], law,
                         s.size[axis]);

@@ -29,6 +29,12 @@ std::string properties(const Specimen& s) {
 
 /// A box of cells at least two largest diameters wide; its faces have the numbers 0 to 5, or 0 to 3.
 std::string mesh(const Specimen& s) {
+  if (s.round()) {
+    return fmt::format(
+        "# not carried over: the cylinder. Give a mesh of its inside: radius {0} m about x = y = {0} m, from z = 0 to "
+        "{1} m at least\nsubsection mesh\n  set type = gmsh\n  set file name = cylinder.msh\nend\n",
+        s.radius(), inner_box(s)[2].high);
+  }
   const auto box = inner_box(s);
   std::string cells, low, high;
   for (std::size_t axis = 0; axis <= s.vertical(); ++axis) {

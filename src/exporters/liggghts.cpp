@@ -52,7 +52,13 @@ std::string walls(const Specimen& s) {
       "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}}{4} primitive type 2 {0}plane "
       "{2}{3}\n";
   std::string text;
-  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+  if (s.round()) {
+    text = fmt::format(
+        "fix             wall_mantle all wall/gran model hertz tangential ${{tangential}}{1} primitive type 2 "
+        "zcylinder {0} {0} {0}{2}\n",
+        s.radius(), limit(s), rolling(s));
+  }
+  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s));
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s));

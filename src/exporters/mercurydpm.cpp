@@ -53,7 +53,15 @@ std::string walls(const Specimen& s) {
   constexpr const char* normals[] = {"Vec3D({}1.0, 0.0, 0.0)", "Vec3D(0.0, {}1.0, 0.0)", "Vec3D(0.0, 0.0, {}1.0)"};
   const auto along = [&](std::size_t axis, const char* sign) { return fmt::format(fmt::runtime(normals[axis]), sign); };
   std::string text;
-  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+  if (s.round()) {
+    text = fmt::format(
+        "  AxisymmetricIntersectionOfWalls mantle;\n  mantle.setSpecies(species);\n"
+        "  mantle.setPosition(Vec3D({0}, {0}, 0.0));\n  mantle.setAxis(Vec3D(0.0, 0.0, 1.0));\n"
+        "  mantle.addObject(Vec3D(1.0, 0.0, 0.0), Vec3D({0}, 0.0, 0.0));\n"
+        "  problem.wallHandler.copyAndAddObject(mantle);\n",
+        s.radius());
+  }
+  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) {
       text += fmt::format("  period.set({}, 0.0, {});\n  problem.boundaryHandler.copyAndAddObject(period);\n",
                           along(axis, ""), s.size[axis]);
@@ -75,10 +83,10 @@ std::string driver(const Specimen& s) {
       "// not carried over: a wall of another stiffness or friction than the particles'\n"
       "// A driver of MercuryDPM: reads the pack and lets it settle for some steps.\n"
       "#include <iostream>\n#include \"Mercury{0}D.h\"\n#include \"Boundaries/PeriodicBoundary.h\"\n"
-      "#include \"Species/HertzianViscoelasticMindlinSpecies.h\"\n#include \"Walls/InfiniteWall.h\"\n\n"
+      "#include \"Species/HertzianViscoelasticMindlinSpecies.h\"\n#include \"Walls/InfiniteWall.h\"\n{1}\n"
       "int main() {{\n  Mercury{0}D problem;\n  problem.setName(\"pack\");\n  problem.setSystemDimensions({0});\n"
       "  problem.setParticleDimensions(3);  // spheres, in a plane too\n",
-      s.flat() ? 2 : 3);
+      s.flat() ? 2 : 3, s.round() ? "#include \"Walls/AxisymmetricIntersectionOfWalls.h\"\n" : "");
   text += species(s);
   text += fmt::format(
       "  problem.setGravity(Vec3D({}));\n"

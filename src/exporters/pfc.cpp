@@ -43,7 +43,11 @@ std::string walls(const Specimen& s) {
                        axis == 2 ? 0 : 90, axis == 0 ? 90 : 0);
   };
   std::string text;
-  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+  if (s.round()) {
+    text = fmt::format("wall generate cylinder base {0} {0} {1} axis 0 0 1 height {2} radius {0} cap false false\n",
+                       s.radius(), -s.widest, inner_box(s)[2].high + 4.0 * s.widest);
+  }
+  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (!s.periodic(axis)) text += plane(axis, 0.0) + plane(axis, s.size[axis]);
   }
   return text + plane(s.vertical(), 0.0);

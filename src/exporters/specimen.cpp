@@ -164,8 +164,9 @@ std::array<Extent, 3> padded_box(const Specimen& s) {
 }
 
 std::vector<std::string> header_lines(const Specimen& s) {
-  std::string box = "box: " + axis_words(s, 0);
-  for (std::size_t axis = 1; axis <= s.vertical(); ++axis) box += "; " + axis_words(s, axis);
+  std::string box = s.round() ? fmt::format("cylinder: wall of radius {0} around x = y = {0}", s.radius())
+                              : "box: " + axis_words(s, 0);
+  for (std::size_t axis = s.round() ? 2 : 1; axis <= s.vertical(); ++axis) box += "; " + axis_words(s, axis);
   std::vector<std::string> lines{
       fmt::format("packmpi {}: units si (m, kg, s)", version()),
       fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,

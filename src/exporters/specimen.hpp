@@ -67,6 +67,9 @@ struct Specimen {
   Vec3 lowest{}, highest{};  ///< [m] of the centres
 
   [[nodiscard]] bool flat() const { return scene.container.dimension == 2; }
+  /// A vessel that is no box: its wall goes around the axis at x = y = radius.
+  [[nodiscard]] bool round() const { return !scene.container.is_box(); }
+  [[nodiscard]] double radius() const { return scene.container.radius(); }  ///< [m] of it
   [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.container.vertical()); }
   /// Of axis x, y or z.
   [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.container.periodic[axis]; }

@@ -1,6 +1,10 @@
 // YADE: text for SpherePack.load, which carries the period, and a script with the scene's law.
 #include <fmt/compile.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
 #include "exporters/quote.hpp"
@@ -22,8 +26,21 @@ std::string cell(const Specimen& s) {
   return fmt::format("##PERIODIC:: {:.17g} {:.17g} {:.17g}\n", size[0], size[1], size[2]);
 }
 
+/// Facets that touch the cylinder from outside, so many that their edges are half a thousandth of a radius beyond it;
+/// they begin below the floor, so that no particle meets their ends.
+std::string mantle(const Specimen& s) {
+  constexpr double gap = 5e-4;
+  const double facets = std::max(48.0, std::ceil(std::numbers::pi * std::sqrt(s.radius() / (2.0 * gap * s.widest))));
+  const double high = inner_box(s)[2].high + 4.0 * s.widest;
+  return fmt::format(
+      "walls += geom.facetCylinder(({0}, {0}, {1}), {0} / math.cos(math.pi / {2:.0f}), {3}, segmentsNumber={2:.0f}, "
+      "wallMask=4, material='walls')\n",
+      s.radius(), 0.5 * (high - s.widest), facets, high + s.widest);
+}
+
 std::string walls(const Specimen& s) {
   std::string text = fmt::format("walls = [utils.wall(0, axis={}, sense=1, material='walls')]\n", s.vertical());
+  if (s.round()) return text + mantle(s);
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
     if (s.periodic(axis)) continue;
     text += fmt::format(
@@ -58,11 +75,12 @@ std::string script(const Specimen& s) {
   const double g = in.jamming.gravity;
   std::string text = notes(s, Fluid::not_carried, "# ");
   text += fmt::format(
-      "# not carried over: velocities and spins{}\n"
+      "# not carried over: velocities and spins{0}\n"
       "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
-      "import math\nimport os\nfrom yade import pack, utils\n\n"
-      "data = os.environ.get('PACK_DATA', {})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
-      remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file));
+      "import math\nimport os\nfrom yade import {2}pack, utils\n\n"
+      "data = os.environ.get('PACK_DATA', {1})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
+      remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file),
+      s.round() ? "geom, " : "");
   text += materials(s);
   text += fmt::format(
       "spheres = pack.SpherePack()\nspheres.load(data)\n"
@@ -73,13 +91,13 @@ std::string script(const Specimen& s) {
   text += walls(s) + "O.bodies.append(walls)\n\n";
   text += fmt::format(
       "O.engines = [\n    ForceResetter(),\n"
-      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], allowBiggerThanPeriod=True),\n"
-      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],\n"
+      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(){3}], allowBiggerThanPeriod=True),\n"
+      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(){4}],\n"
       "                    [Ip2_FrictMat_FrictMat_MindlinPhys(betan={0}, betas={0})],\n"
       "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
       "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
-      in.contact.damping_ratio, s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g),
-      s.scene.time_step);
+      in.contact.damping_ratio, s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.scene.time_step,
+      s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom()" : "");
   return text +
          "def report():\n"
          "    volume = sum(4 / 3 * math.pi * O.bodies[i].shape.radius ** 3 for i in ids)\n"

@@ -97,6 +97,7 @@ using Source = std::function<input::Input(const std::vector<std::string>& sets)>
 
 scene::Scene changed(const Source& source, const std::vector<std::string>& sets) { return scene::build(source(sets)); }
 
+// Of a cylinder the reader makes diameter and height of it.
 std::string size_key(const std::vector<double>& size) { return "container.size=" + list(size); }
 
 // What is asked for, once it is clear that it is one thing.
@@ -119,13 +120,11 @@ Unknown unknown_of(const Question& question, int lateral_axes) {
   return Unknown::floor;
 }
 
-// Lateral sides with the area asked for: the open ones, or all, are scaled alike.
-void scale_floor(const Question& question, double area, std::vector<double>& size) {
+// Lateral sides with the area asked for, of those that have the area `now`: the open ones, or all, are scaled alike.
+void scale_floor(const Question& question, double area, double now, std::vector<double>& size) {
   const std::size_t axes = size.size() - 1;
   std::vector<std::size_t> open;
-  double now = 1.0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
-    now *= size[axis];
     if (question.sides.empty() || !question.sides[axis]) open.push_back(axis);
   }
   const double factor = open.size() == 2 ? std::sqrt(area / now) : area / now;
@@ -149,7 +148,8 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
   const auto particles = static_cast<double>(*question.particles);
   if (unknown == Unknown::floor) {
     for (int turn = 0; turn < turns; ++turn) {
-      scale_floor(question, fit_floor(scene, particles, fraction_of(scene, question).value), size);
+      const double area = fit_floor(scene, particles, fraction_of(scene, question).value);
+      scale_floor(question, area, scene.container.floor_area(), size);
       scene = changed(source, {size_key(size)});
     }
     return scene;
@@ -241,11 +241,7 @@ report::LayerRow some_row() {
 pack::ContactCounts expected_contacts(const scene::Scene& scene, std::int64_t particles) {
   const geometry::Container& container = scene.container;
   const double touching = container.dimension == 3 ? 5.2 : 4.5;  // of a particle
-  double walls = container.floor_area();
-  for (int axis = 0; axis < container.lateral_axes(); ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    if (!container.periodic[a]) walls += 2.0 * container.floor_area() / container.size[a] * container.height();
-  }
+  const double walls = container.floor_area() + container.wall_area(container.height());
   const double r = scene.sizes.mean();
   const double shadow = container.dimension == 3 ? geometry::volume(2, r) : 2.0 * r;
   return {.pairs = std::llround(0.5 * touching * static_cast<double>(particles)),
@@ -383,6 +379,7 @@ report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const
   report::Estimate e;
   e.scene_file = scene.in.file;
   e.found = names.at(static_cast<std::size_t>(unknown));
+  e.round = !scene.container.is_box();
   e.size = scene.in.container.size;
   e.layer_thickness = scene.in.layers.thickness;
   e.thickness_changed = unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open;

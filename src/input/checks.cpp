@@ -13,8 +13,8 @@
 #include "comm/petsc.hpp"
 #include "input/grading.hpp"
 #include "input/radius_range.hpp"
-#include "input/rhythm.hpp"
 #include "input/words.hpp"
+#include "tables/rhythm.hpp"
 
 namespace packmpi::input {
 namespace {
@@ -55,8 +55,15 @@ struct Case {
     for (int axis = 0; axis + 1 < in.container.dimension; ++axis) {
       count *= in.container.size[static_cast<std::size_t>(axis)] / r;
     }
-    return count;
+    return boxed() ? count : 0.25 * std::numbers::pi * count;
   }
+  [[nodiscard]] bool boxed() const { return in.container.shape == VesselShape::box; }
+  /// The key of an extent of the container.
+  [[nodiscard]] std::string extent_key(std::size_t axis) const {
+    if (boxed()) return fmt::format("container.size[{}]", axis);
+    return axis + 1 == in.container.size.size() ? "container.height" : "container.diameter";
+  }
+  [[nodiscard]] const char* room_key() const { return boxed() ? "container.size" : "container.diameter"; }
 };
 
 /// The share of a Gaussian, lognormal or Weibull distribution that falls into [min, max].
@@ -152,10 +159,9 @@ void check_fit(const Case& scene) {
   const auto& size = scene.in.container.size;
   for (std::size_t axis = 0; axis < size.size(); ++axis) {
     if (diameter <= size[axis]) continue;
-    scene.refuse(scene.largest_key(),
-                 fmt::format("the largest particle is {:g} m across, more than container.size[{}] = {:g} m; "
-                             "make it smaller or the container larger",
-                             diameter, axis, size[axis]));
+    scene.refuse(scene.largest_key(), fmt::format("the largest particle is {:g} m across, more than {} = {:g} m; "
+                                                  "make it smaller or the container larger",
+                                                  diameter, scene.extent_key(axis), size[axis]));
   }
   if (diameter > scene.in.layers.thickness) {
     scene.refuse("layers.thickness",
@@ -202,7 +208,7 @@ void check_counts(const Case& scene) {
   const double count = std::min(scene.particles_in(scene.height(), settled, typical),
                                 most * scene.particles_in(layers.thickness, layers.fraction, typical));
   if (!(count <= most_particles)) {
-    scene.refuse("container.size",
+    scene.refuse(scene.room_key(),
                  fmt::format("about {:.2g} particles, more than 2^40; make the container smaller or the "
                              "particles larger",
                              count));
@@ -223,7 +229,7 @@ void check_resolution(const Case& scene) {
                                   "overlaps; make it smaller or the particles larger",
                                   length, length / scene.smallest(), widest));
   };
-  for (const double length : scene.in.container.size) check("container.size", length);
+  for (const double length : scene.in.container.size) check(scene.room_key(), length);
   check("layers.thickness", scene.in.layers.thickness);
 }
 
@@ -367,6 +373,8 @@ void check_target(const Case& scene) {
 void check_confinement(const Case& scene) {
   const Input& in = scene.in;
   if (!in.confinement) return;
+  if (!scene.boxed())
+    scene.refuse("confinement", "lid and walls under servo are those of a box; remove it, or give shape = \"box\"");
   const Confinement& asked = *in.confinement;
   if (asked.isotropic.has_value() == asked.vertical.has_value()) {
     scene.refuse("confinement", asked.isotropic ? "has isotropic and vertical; give one of them"
@@ -391,7 +399,7 @@ void check_confinement(const Case& scene) {
 
 void check_checkpoint(const Case& scene) {
   const std::string& every = scene.in.checkpoint.every;
-  if (rhythm_of(every)) return;
+  if (tables::rhythm_of(every)) return;
   scene.refuse("checkpoint.every",
                fmt::format("is {}; give a wall time such as \"10min\", \"90 s\" or \"2h\", steps such as "
                            "\"5000 steps\", or \"off\"",
@@ -404,6 +412,12 @@ void check_petsc(const Case& scene) {
 }
 
 }  // namespace
+
+void check_shape(const Input& in, const Document& document) {
+  const Case scene{in, document};
+  if (scene.boxed() || !scene.plane()) return;
+  scene.refuse("container.shape", "\"cylinder\" is a vessel in 3D; give dimension = 3, or shape = \"box\"");
+}
 
 void check_radii(const Input& in, const Document& document) { check_distribution({in, document}); }
 

@@ -5,6 +5,9 @@
 
 namespace packmpi::input {
 
+/// What the vessel's shape asks of other keys, as soon as it is known. Throws Error(bad_input). Local.
+void check_shape(const Input& in, const Document& document);
+
 /// That the keys of the size distribution make one. Throws Error(bad_input) at the place of the key to change. Local.
 void check_radii(const Input& in, const Document& document);
 

@@ -88,6 +88,8 @@ Entry* find_entry(Table& table, std::string_view name) {
   return found == table.end() ? nullptr : &*found;
 }
 
+constexpr std::string_view command_line = "--set ";
+
 /// Takes the part of `path` before the next dot off its front.
 std::string_view next_name(std::string_view& path) {
   const std::size_t dot = std::min(path.find('.'), path.size());
@@ -110,21 +112,35 @@ Document::Document(const std::string& text, const std::string& file) {
 
 void Document::set(const std::string& assignment) {
   const bool prints = std::ranges::none_of(assignment, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  const std::string place = "--set " + (prints ? assignment : toml_string(assignment));
+  const std::string place = std::string(command_line) + (prints ? assignment : toml_string(assignment));
   const std::size_t equals = assignment.find('=');
   std::string_view path = text::trimmed(std::string_view(assignment).substr(0, equals));
   if (equals == std::string::npos || path.empty() || path.ends_with('.')) {
     throw Error(ExitCode::bad_input, place + ": not an assignment; write --set key.path=value");
   }
+  put(path, parse_value(std::string(text::trimmed(std::string_view(assignment).substr(equals + 1))), place));
+}
+
+void Document::put(std::string_view path, Node value) {
   Node* node = &root_;
   while (!path.empty()) {
     const std::string name(next_name(path));
-    if (!std::holds_alternative<Table>(node->value)) *node = {place, Table{}};
+    if (!std::holds_alternative<Table>(node->value)) *node = {value.place, Table{}};
     auto& table = std::get<Table>(node->value);
     Entry* entry = find_entry(table, name);
-    node = entry != nullptr ? &entry->node : &table.emplace_back(Entry{name, {place, Table{}}}).node;
+    node = entry != nullptr ? &entry->node : &table.emplace_back(Entry{name, {value.place, Table{}}}).node;
   }
-  *node = parse_value(std::string(text::trimmed(std::string_view(assignment).substr(equals + 1))), place);
+  *node = std::move(value);
+}
+
+void Document::erase(std::string_view path) {
+  Table* table = std::get_if<Table>(&root_.value);
+  while (table != nullptr) {
+    const std::string_view name = next_name(path);
+    if (path.empty()) std::erase_if(*table, [&](const Entry& entry) { return entry.name == name; });
+    Entry* entry = path.empty() ? nullptr : find_entry(*table, name);
+    table = entry == nullptr ? nullptr : std::get_if<Table>(&entry->node.value);
+  }
 }
 
 bool Document::rename(std::string_view path, const std::string& name) {
@@ -158,6 +174,8 @@ const std::string& Document::place(std::string_view path) const {
   }
   return root_.place;
 }
+
+bool is_override(const Node& node) { return node.place.starts_with(command_line); }
 
 Node parse_value(const std::string& text, const std::string& place) {
   try {

@@ -39,6 +39,11 @@ class Document {
   /// Puts the value of "key.path=value" in place of what the file says. Throws Error(bad_input).
   void set(const std::string& assignment);
 
+  /// Puts a value at "a.b", in place of what is there.
+  void put(std::string_view path, Node value);
+  /// Takes the entry at "a.b" out, if there is one.
+  void erase(std::string_view path);
+
   /// Gives the entry at "a.b" the name `name`, in place. False: there is none.
   bool rename(std::string_view path, const std::string& name);
 
@@ -51,6 +56,9 @@ class Document {
  private:
   Node root_;
 };
+
+/// Was it put there by the command line?
+[[nodiscard]] bool is_override(const Node& node);
 
 /// A TOML value from text; a bare word is a string. Throws Error(bad_input) beginning with `place`.
 [[nodiscard]] Node parse_value(const std::string& text, const std::string& place);

@@ -12,6 +12,7 @@
 
 namespace packmpi::input {
 
+enum class VesselShape { box, cylinder };
 enum class Boundary { wall, periodic };
 enum class SizeDistribution { equal, gaussian, uniform, lognormal, weibull, bidisperse, discrete, grading, list };
 enum class Weighting { number, mass, area };
@@ -27,9 +28,12 @@ enum class StopRule { duration, settled };
 enum class Decomposition { slab, pencil, metis };
 
 struct Container {
-  int dimension = 3;               ///< 2 or 3
-  std::vector<double> size;        ///< [m] lateral extents, then the desired height H_d; `dimension` numbers
-  std::vector<Boundary> boundary;  ///< one per lateral axis
+  int dimension = 3;  ///< 2 or 3
+  VesselShape shape = VesselShape::box;
+  double diameter = 0.0, height = 0.0;  ///< [m] inside, and the desired height H_d: of vessels that are no box
+  std::vector<double> size;        ///< [m] lateral extents, then the desired height H_d; `dimension` numbers. Of other
+                                   ///< vessels than a box: what is around them, once the scene has been read
+  std::vector<Boundary> boundary;  ///< one per lateral axis; of other vessels than a box: walls
 };
 
 /// Points [diameter in m, percent passing], ascending once they have been read.

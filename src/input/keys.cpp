@@ -81,6 +81,9 @@ Key only(double value, Key key) {
 
 bool is(const Input& in, SizeDistribution one) { return in.particles.radius.distribution == one; }
 
+constexpr Condition boxed{"shape = \"box\"", [](const Input& in) { return in.container.shape == VesselShape::box; }};
+constexpr Condition round{"shape = \"cylinder\"",
+                          [](const Input& in) { return in.container.shape == VesselShape::cylinder; }};
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
 constexpr Condition gaussian{"distribution = \"gaussian\"",
                              [](const Input& in) { return is(in, SizeDistribution::gaussian); }};
@@ -138,10 +141,14 @@ std::vector<Key> container_keys() {
   return {
     whole("container.dimension", at(container, &Container::dimension), between(2, 3), "3",
           "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
-    reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
-          "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D."),
-    reals("container.boundary", at(container, &Container::boundary), Count::lateral_axes, plain, any, "wall",
-          "How each lateral axis ends. There is always a floor; the top is open."),
+    word("container.shape", at(container, &Container::shape), "box",
+          "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2 (doc/vessels.md)."),
+    when(boxed, reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
+          "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D. Of a cylinder [D, D, H_d] stands for diameter and height.")),
+    when(round, real("container.diameter", at(container, &Container::diameter), length, above(0), mandatory, "Diameter inside.")),
+    when(round, real("container.height", at(container, &Container::height), length, above(0), mandatory, "The height H_d to be filled.")),
+    when(boxed, reals("container.boundary", at(container, &Container::boundary), Count::lateral_axes, plain, any, "wall",
+          "How each lateral axis ends. There is always a floor; the top is open.")),
   };
 }
 

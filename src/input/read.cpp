@@ -156,6 +156,41 @@ bool rename_diameters(Document& document) {
   return document.rename(diameter_table, "radius");
 }
 
+/// Of a cylinder, size = [D, D, H_d] stands for its diameter and height. What the command line sets replaces what the
+/// file says of the same lengths.
+void take_size_of_cylinder(Document& document) {
+  const Node* shape = document.find("container.shape");
+  const Node* size = document.find("container.size");
+  if (shape == nullptr || size == nullptr || describe(*shape) != "\"cylinder\"") return;
+  const auto* list = std::get_if<List>(&size->value);
+  if (list == nullptr || list->size() != 3 || describe((*list)[0]) != describe((*list)[1])) {
+    fail(size->place, "container.size",
+         fmt::format("is {}; a cylinder has a diameter and a height: give those, or size = [D, D, H] with the diameter "
+                     "twice",
+                     list == nullptr || list->size() != 3
+                         ? describe(*size)
+                         : fmt::format("{} by {}", describe((*list)[0]), describe((*list)[1]))));
+  }
+  const List lengths = *list;
+  const bool wins = is_override(*size);
+  const std::string place = size->place;
+  for (const auto& [path, k] : {std::pair("container.diameter", 0), std::pair("container.height", 2)}) {
+    const Node* own = document.find(path);
+    if (own != nullptr && !wins && !is_override(*own)) {
+      fail(place, "container.size", fmt::format("there is a {}, too; remove one of them", path));
+    }
+    if (own == nullptr || wins) document.put(path, lengths[static_cast<std::size_t>(k)]);
+  }
+  document.erase("container.size");
+}
+
+/// What is around a vessel that is no box; its sides are walls.
+void take_vessel(Container& container) {
+  if (container.shape == VesselShape::box) return;
+  container.size = {container.diameter, container.diameter, container.height};
+  container.boundary = {Boundary::wall, Boundary::wall};
+}
+
 /// What is said of radii, in the names of the scene.
 std::string in_diameters(std::string words) {
   for (const auto& [ours, theirs] :
@@ -247,7 +282,11 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
   if (document.find("start") != nullptr) in.start.emplace();
   if (document.find("target") != nullptr) in.target.emplace();
   if (document.find("confinement") != nullptr) in.confinement.emplace();
-  for (const Key& key : keys()) read_key(key, document, in);
+  for (const Key& key : keys()) {
+    if (key.path == "container.size") check_shape(in, document);
+    read_key(key, document, in);
+  }
+  take_vessel(in.container);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
   take_curve(document, curve, in);
   take_list(document, curve, in);
@@ -298,6 +337,7 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   in.file = path;
   in.name = std::filesystem::path(path).stem().string();
   in.particles.radius.diameters = rename_diameters(document);
+  take_size_of_cylinder(document);
   try {
     read_document(document, curve, in);
   } catch (const Error& error) {

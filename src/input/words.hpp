@@ -11,6 +11,8 @@ template <class Enum>
 inline constexpr std::array<std::string_view, 0> words_of{};
 
 template <>
+inline constexpr std::array<std::string_view, 2> words_of<VesselShape>{"box", "cylinder"};
+template <>
 inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
 template <>
 inline constexpr std::array<std::string_view, 9> words_of<SizeDistribution>{

@@ -16,6 +16,7 @@ Analysis analyse(const Specimen& pack) {
   a.mean_diameter = 2.0 * pack.scene.sizes.mean();
   a.sizes = size_match(pack.comm, pack.store, pack.scene.sizes.curve());
   for (int axis = 0; axis < pack.scene.container.dimension; ++axis) a.density.push_back(density_profile(pack, axis));
+  a.radial = radial_profile(pack);
   a.segregation = segregation(pack);
   a.pairs = pair_distribution(pack);
   a.springs = pack.springs;

@@ -44,6 +44,17 @@ struct Specimen {
 /// lateral axis of the bulk, whose cut particles count as a whole. Collective.
 [[nodiscard]] Profile density_profile(const Specimen& pack, int axis);
 
+/// Solid fraction of the bulk of a round vessel by the distance from its wall, in shells a twentieth of a mean diameter
+/// thick (the last, around the axis, what is left); and of all that is at least `from_walls` [m] away from it, three
+/// mean diameters. Spheres are cut by the shells and by the bulk's planes, to 1e-9 of a radius cubed. Collective. Cost:
+/// about 0.1 ms a particle.
+struct RadialProfile {
+  Profile profile;  ///< empty: of a box, or of no bulk
+  double from_walls = 0.0;
+  double core = 0.0;  ///< 0: the vessel is too narrow for one
+};
+[[nodiscard]] RadialProfile radial_profile(const Specimen& pack);
+
 /// Segregation: mean radius [m] by number in slabs three mean diameters thick up the pack (0 where there is none), and
 /// the correlation of radius and height, -1 .. 1 (0 for equal radii). Collective.
 struct Segregation {
@@ -99,6 +110,7 @@ struct Analysis {
   double mean_diameter = 0.0;  ///< [m] of the scene
   SizeMatches sizes;
   std::vector<Profile> density;  ///< along x, y(, z)
+  RadialProfile radial;          ///< of a round vessel
   Segregation segregation;
   PairDistribution pairs;
   bool springs = true;  ///< see Specimen

@@ -15,7 +15,8 @@ struct ColumnMaps {
   std::array<std::int64_t, 2> counts{1, 1};  ///< columns along x and y; 2D: one along y
   std::array<double, 2> widths{};            ///< [m]; 2D: of y 0
   std::vector<double> top;                   ///< [m] highest top of a particle whose centre lies in the column
-  std::vector<double> solid_fraction;        ///< below H_d, of the particles whose centres lie in the column
+  std::vector<double> solid_fraction;        ///< below H_d, of the particles whose centres lie in the column; 0 where
+                                             ///< less than an eighth of the column is in a round vessel
   /// [Pa] (2D: [N/m]) vertical stress of the contacts below H_d that have their middle in the column (Love-Weber: sum
   /// of force times branch, vertical components, over the column's volume); compression is positive
   std::vector<double> vertical_stress;

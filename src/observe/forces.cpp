@@ -87,7 +87,7 @@ std::vector<ContactForce> wall_forces(const particles::Store& store, const scene
                     .second = neighbor::wall_partner(wall),
                     .overlap = overlap,
                     .force = effect.force,
-                    .normal = scene.container.plane(wall).normal(),
+                    .normal = scene.container.facing(wall, store.position(i)).normal,
                     .springs = effect.springs});
   }
   sort_by_ends(rows);

@@ -17,7 +17,8 @@ namespace packmpi::observe {
 [[nodiscard]] double top(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene);
 
 /// Mean over lateral columns about one largest diameter wide (floor(L / (2 r_max)) per axis, at least 1) of the highest
-/// particle top in the column (by centre; an empty column counts 0) [m]. Collective; a PETSc DMDA vector holds the
+/// particle top in the column (by centre; an empty column counts 0) [m]; in a round vessel each column counts by the
+/// share of it that centres can be in. Collective; a PETSc DMDA vector holds the
 /// columns, or of more than `most_stored` (128 MiB) those that are not empty go by mail: the same bits.
 [[nodiscard]] double surface_height(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                                     std::int64_t most_stored = std::int64_t{1} << 24);

@@ -45,6 +45,15 @@ Profile density_profile(const Specimen& pack, int axis) {
     }
   }
   profile.values = comm::exact_sums(pack.comm, terms);
+  if (!vertical && !box.is_box()) {  // a slab between two chords
+    for (std::size_t k = 0; k < bins; ++k) {
+      const double low = static_cast<double>(k) * profile.width;
+      const auto below = [&](double x) { return geometry::volume_below(2, box.radius(), box.radius(), x); };
+      const double room = (below(low + profile.width) - below(low)) * pack.bulk.depth();
+      profile.values[k] = room > 0.0 ? profile.values[k] / room : 0.0;
+    }
+    return profile;
+  }
   const double section = vertical ? box.floor_area() : box.floor_area() / box.size[a] * pack.bulk.depth();
   for (double& value : profile.values) value /= section * profile.width;
   return profile;

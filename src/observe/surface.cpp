@@ -21,6 +21,32 @@ ColumnNumbering make_columns(const scene::Scene& scene) {
   return columns;
 }
 
+constexpr int samples_a_side = 8;  // of a column: points that tell how much of it is in a round vessel
+
+/// How many of the column's points centres can be at; all of them in a box.
+std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, std::int64_t column) {
+  const std::array<std::int64_t, 2> at{column % columns.counts[0], column / columns.counts[0]};
+  std::int64_t room = 0;
+  for (int k = 0; k < samples_a_side * samples_a_side; ++k) {
+    const std::array<int, 2> point{k % samples_a_side, k / samples_a_side};
+    std::array<double, 2> x{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double share = (point[axis] + 0.5) / samples_a_side;
+      x[axis] =
+          (static_cast<double>(at[axis]) + share) * columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
+    }
+    if (scene.container.holds(x[0], x[1], scene.sizes.mean())) ++room;
+  }
+  return room;
+}
+
+/// Collective. The same of all columns; each rank looks at its share of them.
+std::int64_t room_of_all(const comm::Comm& comm, const scene::Scene& scene, const ColumnNumbering& columns) {
+  std::int64_t room = 0;
+  for (std::int64_t k = comm.rank(); k < columns.size(); k += comm.size()) room += room_of(scene, columns, k);
+  return comm.sum(room);
+}
+
 /// Collective. Columns are dealt out in runs; the tops of those of this rank's run that hold any particle of any rank.
 std::vector<double> heights_by_mail(const comm::Comm& comm, const std::vector<ColumnValue>& tops,
                                     const ColumnNumbering& columns) {
@@ -62,11 +88,16 @@ double surface_height(const comm::Comm& comm, const particles::Store& store, con
 double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
                       const scene::Scene& scene, std::int64_t most_stored) {
   const ColumnNumbering columns = make_columns(scene);
-  const std::vector<ColumnValue> tops = highest_tops(stores, scene.container.vertical(), columns);
+  std::vector<ColumnValue> tops = highest_tops(stores, scene.container.vertical(), columns);
+  auto all = static_cast<double>(columns.size());
+  if (!scene.container.is_box()) {  // the mean over the vessel: a column counts as much as it has room for centres
+    for (ColumnValue& top : tops) top.value *= static_cast<double>(room_of(scene, columns, top.column));
+    all = static_cast<double>(std::max<std::int64_t>(1, room_of_all(comm, scene, columns)));
+  }
   const bool few = columns.size() <= most_stored;
   const double sum =
       comm::exact_sum(comm, few ? heights_on_grid(comm, tops, columns) : heights_by_mail(comm, tops, columns));
-  return sum / (static_cast<double>(columns.counts[0]) * static_cast<double>(columns.counts[1]));
+  return sum / all;
 }
 
 }  // namespace packmpi::observe

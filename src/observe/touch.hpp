@@ -36,7 +36,7 @@ struct Touch {
 /// Depth by which owned particle `i` is inside a wall [m]; positive: it touches.
 [[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Container& box,
                                              LocalIndex i, neighbor::Wall wall) {
-  return store.radius(i) - box.plane(wall).distance(store.position(i));
+  return store.radius(i) - box.facing(wall, store.position(i)).distance;
 }
 
 /// Calls take(entry, i, j, overlap [m]) for each listed pair that touches, in the order of the list.

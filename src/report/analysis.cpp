@@ -58,6 +58,10 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
   root["mean_diameter"] = a.mean_diameter;
   root["sizes"] = to_json(a.sizes);
   root["density_profile"] = density(a);
+  if (!a.radial.profile.values.empty()) {
+    root["radial_profile"] = {{"from_wall", profile(a.radial.profile)},
+                              {"core", {{"from_wall", a.radial.from_walls}, {"solid_fraction", a.radial.core}}}};
+  }
   root["local_density"] = {{"counted", a.local.counted},
                            {"left_out", a.local.left_out},
                            {"mean", a.local.mean},
@@ -84,6 +88,7 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
                          {"mean_radius", profile(a.segregation.mean_radius)}};
   root["units"] = {{"mean_diameter", "m"},
                    {"density_profile", "m"},
+                   {"from_wall", "m"},
                    {"mean_normal_force", "N"},
                    {"stress", dimension == 3 ? "Pa" : "N/m"},
                    {"floor_force", "N"},
@@ -116,6 +121,10 @@ std::string to_table(const observe::Analysis& a, int dimension) {
   line("kinetic energy / (m g d)", a.rest.kinetic_energy);
   line("mean overlap / r", a.rest.mean_overlap);
   line("worst overlap / r", a.rest.worst_overlap);
+  if (a.radial.core > 0.0) {
+    line("solid fraction three diameters from the wall", a.radial.core);
+    line("porosity of it", porosity(a.radial.core));
+  }
   line("local solid fraction in the bulk, mean", a.local.mean);
   line("local solid fraction in the bulk, standard deviation", a.local.sd);
   line("porosity of that mean", porosity(a.local.mean));

@@ -29,6 +29,7 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
                                   {"target_sd_radius", "m", r.target_sd_radius},
                                   {"target_min_radius", "m", r.target_min_radius},
                                   {"target_max_radius", "m", r.target_max_radius}};
+  if (r.shape != "box") fields.push_back({"shape", "", r.shape});
   if (r.target_particles > 0) fields.push_back({"target_particles", "", r.target_particles});
   if (r.density.on()) {
     fields.push_back({"target_density_key", "", r.density.key});

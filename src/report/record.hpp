@@ -90,7 +90,8 @@ struct RunRecord {
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
-  Vec3 size{};                        ///< [m] container
+  std::string shape = "box";          ///< of the container, as the scene calls it
+  Vec3 size{};                        ///< [m] container; of another shape than a box the prism around it
   double target_height = 0.0;         ///< [m] H_d
   double target_fraction = 0.0;       ///< phi_0 of each insertion
   std::int64_t target_particles = 0;  ///< 0: as many as the height takes

@@ -44,7 +44,7 @@ Keeper::Keeper(Bed& bed, Journal& journal, const Files& files, const Options& op
     : bed_(bed),
       journal_(journal),
       files_(files),
-      rhythm_(input::rhythm_of(bed.scene.in.checkpoint.every).value_or(input::Rhythm{})),
+      rhythm_(tables::rhythm_of(bed.scene.in.checkpoint.every).value_or(tables::Rhythm{})),
       limit_(std::min(options.max_hours > 0.0 ? options.max_hours * 3600.0 : never, slurm_seconds())),
       last_step_(bed.progress.steps),
       step_limit_(options.max_steps > 0 ? bed.progress.steps + options.max_steps

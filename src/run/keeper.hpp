@@ -6,12 +6,12 @@
 
 #include "base/timer.hpp"
 #include "base/types.hpp"
-#include "input/rhythm.hpp"
 #include "run/bed.hpp"
 #include "run/files.hpp"
 #include "run/journal.hpp"
 #include "run/options.hpp"
 #include "run/restart.hpp"
+#include "tables/rhythm.hpp"
 
 namespace packmpi::run {
 
@@ -55,7 +55,7 @@ class Keeper {
   Bed& bed_;
   Journal& journal_;
   const Files& files_;
-  input::Rhythm rhythm_;
+  tables::Rhythm rhythm_;
   double limit_ = 0.0;      // [s] since the start; rank 0; infinite: none
   std::int64_t last_step_;  // of the last checkpoint, or of the start
   std::int64_t step_limit_;

@@ -6,6 +6,7 @@
 
 #include "comm/petsc.hpp"
 #include "dynamics/kernel.hpp"
+#include "input/words.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
 #include "report/judge.hpp"
@@ -81,6 +82,7 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.effective_input = scene.in.effective;
   record.seed = scene.in.seed;
   record.dimension = scene.container.dimension;
+  record.shape = input::word(scene.in.container.shape);
   record.size = scene.container.size;
   record.target_height = scene.container.height();
   record.target_fraction = scene.in.layers.fraction;

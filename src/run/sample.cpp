@@ -63,6 +63,7 @@ input::Input smaller(const scene::Scene& scene) {
       sample_particles * volume / (scene::expected_fraction(scene).value * in.container.size.back());  // 2D: a length
   const double side = std::max(
       {dimension == 3 ? std::sqrt(area) : area, side_in_mean * diameter, side_in_columns * scene.column_width()});
+  if (side < in.container.size.front()) in.container.shape = input::VesselShape::box;  // a cylinder's middle
   for (std::size_t axis = 0; axis < in.container.boundary.size(); ++axis) {
     if (!(side < in.container.size[axis])) continue;
     in.container.size[axis] = side;

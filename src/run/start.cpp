@@ -9,6 +9,7 @@
 
 #include "base/log.hpp"
 #include "input/read.hpp"
+#include "input/words.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
 #include "pack/scene_change.hpp"
@@ -35,6 +36,12 @@ void check_container(const scene::Scene& scene, const input::Input& source) {
   const input::Container& before = source.container;
   if (now.dimension != before.dimension) {
     refuse(scene, fmt::format("start.pack: is a pack in {}D, the scene is in {}D", before.dimension, now.dimension));
+  }
+  if (now.shape != before.shape) {
+    refuse(scene,
+           fmt::format("start.pack: is in a container of the shape \"{}\", the scene in one of the shape \"{}\"; "
+                       "give that of the pack",
+                       input::word(before.shape), input::word(now.shape)));
   }
   for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
     if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;

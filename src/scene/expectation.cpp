@@ -63,13 +63,28 @@ double by_sizes(const Scene& scene, const Shape& shape) {
   return 1.0 + std::min(1.0, shape.deviation / no_crystal) * (least - 1.0);
 }
 
+// Perimeter over cross-section [1/m].
+double walls_over_area(const geometry::Container& container) {
+  if (!container.is_box()) return container.wall_area(1.0) / container.floor_area();
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(container.lateral_axes()); ++axis) {
+    if (!container.periodic[axis]) sum += 2.0 / container.size[axis];
+  }
+  return sum;
+}
+
 // The share of the bulk's fraction that walls and surface leave.
 double by_borders(const Scene& scene) {
   const double mean = 2.0 * scene.sizes.mean();
   const double largest = 2.0 * scene.sizes.largest();
+  // Side walls over the room, times half of it: of a box what its two walls across an axis take.
   double left = 1.0;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
-    if (!scene.container.periodic[axis]) left -= missing_at_walls * mean / scene.container.size[axis];
+  if (scene.container.is_box()) {
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+      if (!scene.container.periodic[axis]) left -= missing_at_walls * mean / scene.container.size[axis];
+    }
+  } else {
+    left -= missing_at_walls * mean * 0.5 * walls_over_area(scene.container);
   }
   const double missing = scene.sizes.equal() ? missing_at_surface : missing_at_uneven_surface;
   left *= 1.0 - std::min(0.5, missing * largest / scene.container.height());
@@ -182,11 +197,7 @@ double finished_height(const Scene& scene) {
 
 double pressing_depth(const Scene& scene, double depth) {
   constexpr double lateral = 0.5;  // share of the vertical stress
-  double walls_over_area = 0.0;    // [1/m]
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
-    if (!scene.container.periodic[axis]) walls_over_area += 2.0 / scene.container.size[axis];
-  }
-  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area;
+  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area(scene.container);
   return rate * depth > 1e-6 ? (1.0 - elementary::exponential(-rate * depth)) / rate : depth;
 }
 

@@ -74,6 +74,25 @@ Ownership::Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, i
   comm::agree_on(comm, [&] { check_ranks(grid_, kind_, comm.size()); });
   table_ = cut(std::vector<std::int64_t>(weight_count(), 0));
   collect();
+  if (!grid.box().is_box()) rebalance(room());
+}
+
+// How much of each of this rank's columns is inside a round vessel: the first particles come where there is room.
+std::vector<std::int64_t> Ownership::room() const {
+  constexpr int side = 4;
+  const auto [wx, wy] = grid_.widths();
+  std::vector<std::int64_t> points;
+  points.reserve(columns_.size());
+  for (const geometry::ColumnIndex column : columns_) {
+    const auto ix = static_cast<double>(column % grid_.counts()[0]),
+               iy = static_cast<double>(column / grid_.counts()[0]);
+    std::int64_t inside = 0;
+    for (int k = 0; k < side * side; ++k) {
+      if (grid_.box().holds((ix + (k % side + 0.5) / side) * wx, (iy + (k / side + 0.5) / side) * wy, 0.0)) ++inside;
+    }
+    points.push_back(inside);
+  }
+  return points;
 }
 
 std::size_t Ownership::long_axis() const { return longer_axis(grid_); }

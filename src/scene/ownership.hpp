@@ -23,7 +23,7 @@ void check_ranks(const geometry::ColumnGrid& grid, input::Decomposition kind, in
 /// this. Memory: cut positions for slab and pencil, at most 65,536 tiles of columns for METIS; never O(particles).
 class Ownership {
  public:
-  /// Collective. Equal shares. Throws on all ranks as check_ranks() does.
+  /// Collective. Equal shares, in a round vessel of the room there is. Throws on all ranks as check_ranks() does.
   Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, input::Decomposition kind);
 
   /// Collective. Shares of equal weight; `mine` are the weights of the columns this rank owns, in the order of
@@ -54,6 +54,7 @@ class Ownership {
   [[nodiscard]] Table cut(std::span<const std::int64_t> weights) const;  // collective for METIS
   [[nodiscard]] Rank owner(const Table& table, geometry::ColumnIndex column) const noexcept;
   [[nodiscard]] bool worth_it(const Table& table, std::span<const std::int64_t> mine) const;  // collective
+  [[nodiscard]] std::vector<std::int64_t> room() const;
   void collect();  // columns_ and neighbors_ from the table
 
   const comm::Comm* comm_;

@@ -178,7 +178,7 @@ double fraction_of_count(const input::Input& in, const Scene& scene) {
       static_cast<double>(in.particles.count) * mean / scene.container.volume_between(0.0, in.container.size.back());
   if (fraction < 1.0) return fraction;
   refuse(in, fmt::format("particles.count: {} particles have {:.3g} times the container's volume; lower it, or enlarge "
-                         "container.size",
+                         "the container",
                          in.particles.count, fraction));
 }
 
@@ -215,6 +215,7 @@ geometry::Container container_of(const input::Container& container) {
   for (std::size_t axis = 0; axis < container.boundary.size(); ++axis) {
     box.periodic[axis] = container.boundary[axis] == input::Boundary::periodic;
   }
+  if (container.shape == input::VesselShape::cylinder) box.shape = geometry::Shape::cylinder;
   return box;
 }
 

@@ -100,6 +100,7 @@ std::vector<CloudPlan> plans() {
       {.owned = 0, .ghosts = 5, .seed = 7},
       {.owned = 40, .ghosts = 0, .skin = -0.9, .seed = 8},  // hardly any pair
       {.owned = 120, .ghosts = 30, .near_field = true, .seed = 9},
+      {.owned = 150, .ghosts = 20, .round = true, .seed = 10},
   };
 }
 

@@ -17,8 +17,8 @@
 #include "input/radius_range.hpp"
 #include "input/read.hpp"
 #include "input/restitution.hpp"
-#include "input/rhythm.hpp"
 #include "input/time_step.hpp"
+#include "tables/rhythm.hpp"
 #include "tables/sieve_table.hpp"
 #include "tables/units.hpp"
 
@@ -611,6 +611,36 @@ TEST(GoodInput, AListOfSizesIsANumberOfParticles) {
   EXPECT_EQ(again.particles.radius.order, ListOrder::file);
 }
 
+std::string in_vessel(const std::string& lines) {
+  std::string text = least;
+  return text.replace(text.find("size = [1.0, 1.0, 0.5]"), 22, lines);
+}
+
+TEST(GoodInput, ACylinderHasADiameterAndAHeight) {
+  const Input in = parse(in_vessel("shape = \"cylinder\"\ndiameter = \"80 cm\"\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(in.container.shape, VesselShape::cylinder);
+  EXPECT_EQ(in.container.diameter, 0.8);
+  EXPECT_EQ(in.container.size, (std::vector<double>{0.8, 0.8, 0.5}));
+  EXPECT_EQ(in.container.boundary, (std::vector<Boundary>{Boundary::wall, Boundary::wall}));
+  EXPECT_NE(in.effective.find("shape = \"cylinder\"\ndiameter = 0.8\nheight = 0.5\n"), std::string::npos);
+  EXPECT_EQ(in.effective.find("container.size"), std::string::npos);
+  EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective);
+  const std::string by_size = in_vessel("shape = \"cylinder\"\nsize = [\"80 cm\", \"80 cm\", 0.5]");
+  EXPECT_EQ(parse(by_size, "a.toml", {}).effective, in.effective);
+}
+
+TEST(GoodInput, WhatIsSetOfACylinderWins) {
+  const std::string by_names = in_vessel("shape = \"cylinder\"\ndiameter = 0.8\nheight = 0.5");
+  const std::string by_size = in_vessel("shape = \"cylinder\"\nsize = [0.8, 0.8, 0.5]");
+  const auto size = [](const std::string& text, const std::string& set) {
+    return parse(text, "a.toml", {.set = {set}}).container.size;
+  };
+  EXPECT_EQ(size(by_names, "container.size=[0.6,0.6,0.4]"), (std::vector<double>{0.6, 0.6, 0.4}));
+  EXPECT_EQ(size(by_names, "container.diameter=0.6"), (std::vector<double>{0.6, 0.6, 0.5}));
+  EXPECT_EQ(size(by_size, "container.height=0.4"), (std::vector<double>{0.8, 0.8, 0.4}));
+  EXPECT_EQ(size(least, "container.shape=box"), (std::vector<double>{1.0, 1.0, 0.5}));
+}
+
 TEST(GoodInput, InsertionAloneAsksForLittle) {
   const std::string text =
       "[container]\nsize = [1.0, 1.0, 0.5]\n[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\n"
@@ -703,6 +733,7 @@ TEST(Units, AreExact) {
 }
 
 TEST(Rhythm, OfCheckpoints) {
+  using tables::rhythm_of;
   EXPECT_EQ(rhythm_of("10min")->seconds, 600.0);
   EXPECT_EQ(rhythm_of("90 s")->seconds, 90.0);
   EXPECT_EQ(rhythm_of("1.5h")->seconds, 5400.0);

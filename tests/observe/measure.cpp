@@ -74,6 +74,35 @@ double slow_surface(const std::vector<Grain>& grains, const geometry::Container&
   return static_cast<double>(sum / (static_cast<long double>(nx) * ny));
 }
 
+// The corners of the square around a cylinder are no part of its surface, and neither is what columns at its wall have
+// outside.
+TEST_F(Observe, SurfaceOfALevelBedInACylinderIsItsTop) {
+  auto scene = testing::make_scene(3, {1.0, 1.0, 0.5}, {false, false}, 0.1);
+  scene.container.shape = geometry::Shape::cylinder;
+  std::vector<Grain> grains;
+  for (int i = 0; i < 200; ++i) {
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 x{(i + 0.5) / 200.0, (k + 0.5) / 200.0, 0.2};
+      if (std::hypot(x[0] - 0.5, x[1] - 0.5) <= 0.402) grains.push_back({x, 0.1});
+    }
+  }
+  for (const Spread spread : every_spread) {
+    const auto placed = store(grains, scene, spread);
+    EXPECT_NEAR(surface_height(comm_, placed, scene), 0.3, 1e-12);
+    EXPECT_NEAR(surface_height(comm_, placed, scene, 0), 0.3, 1e-12);  // by mail
+  }
+}
+
+TEST_F(Observe, DensityInACylinderIsThatOfItsRoom) {
+  auto scene = testing::make_scene(3, {1.0, 1.0, 1.0}, {false, false}, 0.1);
+  scene.container.shape = geometry::Shape::cylinder;
+  const auto placed = store({{{0.5, 0.2, 0.5}, 0.1}, {{0.5, 0.5, 1.0}, 0.1}}, scene, every_spread[0]);
+  const Density got = density(comm_, placed, scene, {0.2, 0.8});
+  const double sphere = 4.0 / 3.0 * pi * 1e-3, floor = 0.25 * pi;
+  EXPECT_NEAR(got.phi, 1.5 * sphere / floor, 1e-15);
+  EXPECT_NEAR(got.phi_bulk, sphere / (0.6 * floor), 1e-15);
+}
+
 TEST_F(Observe, SurfaceIsTheMeanOfTheColumnMaxima) {
   const auto flat = testing::make_scene(2, {0.55, 1.0, 0.0}, {false, false}, 0.05);   // 5 columns: fewer than 8 ranks
   const auto solid = testing::make_scene(3, {0.35, 0.25, 1.0}, {false, true}, 0.05);  // 3 x 2 columns

@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
+#include "geometry/volume.hpp"
 #include "support/oracle_rsa.hpp"
 #include "support/rsa_scenes.hpp"
 
@@ -71,6 +73,25 @@ constexpr std::array<bool, 2> periodic{true, true};
 
 TEST(Insert, EqualSpheresBetweenWalls) {
   expect_serial_result(rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.25, 10000), {0, 0.0, 0.4, 0});
+}
+
+TEST(Insert, SpheresInACylinder) {
+  for (const input::Radius& radius : {equal_radius(0.04), uniform_radius(0.02, 0.05)}) {
+    scene::Scene scene = rsa_scene(3, {1.0, 1.0, 1.0}, walls, radius, 0.25, 10000);
+    scene.container.shape = geometry::Shape::cylinder;
+    expect_serial_result(scene, {0, 0.0, 0.4, 0});
+    const comm::Comm comm(MPI_COMM_WORLD);
+    const Ownership ownership(comm, test::rsa_grid(scene), Decomposition::slab);
+    particles::Store store(scene.features.layout());
+    const rsa::Insertion got = rsa::insert(comm, scene, ownership, {0, 0.0, 0.4, 0}, store);
+    const double room = 3.14159265358979 * 0.25 * 0.4;
+    EXPECT_GE(got.solid_volume, 0.25 * room);
+    EXPECT_LT(got.solid_volume, 0.25 * room + geometry::volume(3, 0.05));
+    for (LocalIndex i = 0; i < store.owned(); ++i) {
+      const Vec3 x = store.position(i);
+      EXPECT_LE(std::hypot(x[0] - 0.5, x[1] - 0.5) + store.radius(i), 0.5 + 1e-12);
+    }
+  }
 }
 
 TEST(Insert, EqualSpheresPeriodic) {

@@ -33,6 +33,7 @@ struct Kind {
   bool soft_and_settled;                 // layers end when at rest, softer than the final stage, which hardens them
   bool memory = false, rolling = false;  // of contacts
   bool clipped = false;                  // the third layer ends at H_d
+  bool round = false;                    // in a cylinder
 };
 
 constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, false},
@@ -46,7 +47,8 @@ constexpr std::array kinds{Kind{"spheres", 3, false, false, false, true, 0, fals
                            Kind{"memory", 3, false, false, false, true, 0, false, true},
                            Kind{"memory_without_spin", 2, true, false, false, false, 0, false, true},
                            Kind{"rolling_discs", 2, false, true, false, true, 1, false, true, true},
-                           Kind{"rolling_spheres", 3, true, true, false, true, 1, false, true, true}};
+                           Kind{"rolling_spheres", 3, true, true, false, true, 1, false, true, true},
+                           Kind{"cylinder", 3, true, false, false, true, 1, false, true, true, false, true}};
 
 constexpr std::int64_t layer_steps = 100;
 
@@ -61,6 +63,11 @@ input::Input scene_of(const Kind& kind) {
     in.layers.region = input::RegionRule::container;
   }
   if (kind.periodic) in = test::periodic(in);
+  if (kind.round) {
+    in.container.shape = input::VesselShape::cylinder;
+    in.container.diameter = in.container.height = 0.4;
+    in.container.size = {0.4, 0.4, 0.4};
+  }
   if (kind.near_field) in.near_field = input::NearField{1e-4, 2.0, 1e-6, 3.5, 0.06};
   in.name = "restart";
   in.effective = "seed = 1\n[layers]\nfraction = 0.2\n[output]\ncontacts = false\n";

@@ -127,6 +127,24 @@ TEST_P(SameBits, OnAnyRankCountInAnyDecomposition) {
   }
 }
 
+// A cylinder: columns in its corners are nobody's care, and the wall turns springs from row to row.
+input::Input in_a_cylinder(bool graded, bool memory) {
+  input::Input in = scene_of(3, graded, false, false);
+  in.container.shape = input::VesselShape::cylinder;
+  in.container.diameter = 0.4;
+  in.container.height = 0.12;
+  in.container.size = {0.4, 0.4, 0.12};
+  if (!memory) return in;
+  in.contact.tangential = input::Tangential::mindlin;
+  in.contact.rolling_friction = in.contact.twisting_friction = 0.1;
+  in.drag.coefficient = 0.0;
+  return in;
+}
+
+TEST(SameBitsInACylinder, Equal) { expect_one_pack(in_a_cylinder(false, false), {1, 2, 3, 5}); }
+
+TEST(SameBitsInACylinder, GradedThatRemember) { expect_one_pack(in_a_cylinder(true, true), {1, 2, 3, 5}); }
+
 TEST(SameBitsWithAWindow, OfOneLayer) { expect_one_pack(window_scene(3, false, false, false, 1), {1, 3, 8}); }
 
 TEST(SameBitsWithAWindow, OfTwoGradedPeriodicLayers) {

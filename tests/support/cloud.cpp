@@ -64,6 +64,13 @@ void Cloud::fill(Dice& dice) {
       p[a] = wraps ? dice(0.0, size[0]) : dice(-0.3 * radius, size[0] + 0.3 * radius);  // some beyond the walls
       p[layout.velocity + a] = dice(-1.0, 1.0);
     }
+    if (plan.round &&
+        !features.periodic) {  // those outside the mantle come in, some as far as to be a little behind it
+      const double rho = std::hypot(p[0] - 0.5 * size[0], p[1] - 0.5 * size[0]);
+      const double wall = 0.5 * size[0] + 0.3 * radius;
+      const double scale = rho > wall ? wall * std::sqrt(dice()) / rho : 1.0;
+      for (int a = 0; a < 2; ++a) p[a] = 0.5 * size[0] + scale * (p[a] - 0.5 * size[0]);
+    }
     p[layout.radius] = r;
     p[layout.curvature] = 1.0 / r;
     for (int a = 0; a < layout.spin_components(); ++a) p[layout.spin + a] = dice(-1.0, 1.0);
@@ -103,6 +110,10 @@ void Cloud::list(Dice& dice) {
       walls.wall.push_back(wall);
     };
     near(a[dimension - 1], neighbor::Wall::floor);
+    if (plan.round && !features.periodic) {
+      near(0.5 * size[0] - std::hypot(a[0] - 0.5 * size[0], a[1] - 0.5 * size[0]), neighbor::Wall::mantle);
+      continue;
+    }
     if (!periodic[0]) near(a[0], neighbor::Wall::x_low), near(size[0] - a[0], neighbor::Wall::x_high);
     if (dimension == 3 && !periodic[1]) near(a[1], neighbor::Wall::y_low), near(size[1] - a[1], neighbor::Wall::y_high);
   }
@@ -222,6 +233,7 @@ dynamics::StepData Cloud::data() {
           .size = size,
           .periodic = periodic,
           .planes = dynamics::planes_of({features.dimension, size, periodic}),
+          .round = {geometry::RoundWall{{0.5 * size[0], 0.5 * size[0]}, 0.5 * size[0]}},
           .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
           .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }

@@ -261,8 +261,17 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neig
     case neighbor::Wall::y_high:
       n[1] = 1.0, distance = data.size[1] - i.x[1];
       break;
-    case neighbor::Wall::lid:  // none of the clouds has one
+    case neighbor::Wall::lid:
+      n[up] = 1.0, distance = data.planes[5].offset - i.x[up];
       break;
+    case neighbor::Wall::mantle: {
+      const geometry::RoundWall& round = data.round[0];
+      const double rho = std::sqrt((i.x[0] - round.axis[0]) * (i.x[0] - round.axis[0]) +
+                                   (i.x[1] - round.axis[1]) * (i.x[1] - round.axis[1]) + tiny);
+      n = {(i.x[0] - round.axis[0]) * (1.0 / rho), (i.x[1] - round.axis[1]) * (1.0 / rho), 0.0};
+      distance = round.offset - rho;
+      break;
+    }
   }
   double reduced_radius = data.law.wall.reduced_radius;
   double reduced_mass = data.law.wall.reduced_mass;

@@ -64,6 +64,7 @@ class Pack:
     dimension       2 or 3
     size            (dimension): lateral extents (under stress: where the sides have come to), then the target height H_d [m]
     lid             height of the lid [m], or None: the pack has a free surface
+    shape           of the container: "box", or "cylinder", whose diameter the lateral extents are
     position        (N, 3): centres [m]; in 2D z is 0 and y is upward
     radius          (N) [m]
     velocity        (N, 3) [m/s]
@@ -129,6 +130,7 @@ class Pack:
         if self.lid is not None:
             sides = [summary["length_under_lid_x"], summary["length_under_lid_y"]]
             self.size[:-1] = sides[:len(self.size) - 1]
+        self.shape: str = summary.get("shape", "box")
         self.dimension: int = summary["dimension"]
         self.phi: float = summary["phi"]
         self.phi_bulk: float = summary["phi_bulk"]

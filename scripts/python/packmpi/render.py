@@ -97,8 +97,10 @@ LID_WORDS = "blue: lid"
 
 
 def container_size(pack: Pack) -> str:
-    """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest."""
+    """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest; of a cylinder its diameter and height."""
     scale, unit = length_unit(float(pack.size.max()))
+    if pack.shape == "cylinder":
+        return f"a cylinder, {scale * pack.size[0]:g} x {scale * pack.size[2]:g} {unit}"
     lengths = [*pack.size[:-1], pack.size[-1] if pack.lid is None else pack.lid]
     return " x ".join(f"{scale * length:g}" if pack.lid is None else f"{scale * length:.4g}" for length in lengths) + f" {unit}"
 

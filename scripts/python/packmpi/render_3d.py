@@ -109,10 +109,41 @@ def plate_actor(lx: float, ly: float, z: float) -> Any:
     return actor
 
 
+def ring(radius: float, z: float) -> list[Segment]:
+    """A circle at a height, around x = y = radius."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 121)
+    points = [(radius * (1.0 + np.cos(a)), radius * (1.0 + np.sin(a)), z) for a in angles]
+    return list(zip(points[:-1], points[1:]))
+
+
+def mantle_actor(radius: float, top: float) -> Any:
+    """The wall of a cylinder, as clear as glass."""
+    line = vtk.vtkLineSource()
+    line.SetPoint1(radius, radius, 0.0)
+    line.SetPoint2(radius, radius, top)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(radius)
+    tube.SetNumberOfSides(120)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(tube.GetOutputPort())
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetColor(colors.to_rgb(INK))
+    look.SetOpacity(0.07)
+    look.LightingOff()
+    return actor
+
+
 def container_actors(pack: Pack) -> list[Any]:
-    """The edges of the container, and the target height; or a lid that lets what is under it be seen."""
+    """The edges of the container, and the target height; or a lid that lets what is under it be seen; of a round one its wall, too."""
     lx, ly, target = pack.size / extent(pack)
     top = (pack.top() if pack.lid is None else pack.lid) / extent(pack)
+    if pack.shape == "cylinder":
+        radius = 0.5 * lx
+        return [lines_actor(ring(radius, 0.0) + ring(radius, top), INK, 0.0015), lines_actor(ring(radius, target), TARGET, 0.0025),
+                mantle_actor(radius, top)]
     upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
     thickness = 0.0020
     if pack.lid is not None:

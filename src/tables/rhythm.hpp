@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-namespace packmpi::input {
+namespace packmpi::tables {
 
 /// By wall time or by steps; both 0: only when the run is told to stop.
 struct Rhythm {
@@ -15,4 +15,4 @@ struct Rhythm {
 /// The meaning of checkpoint.every: "10min", "90 s", "2h", "5000 steps", "off". None: no such words. Local.
 [[nodiscard]] std::optional<Rhythm> rhythm_of(std::string_view every);
 
-}  // namespace packmpi::input
+}  // namespace packmpi::tables

@@ -1,8 +1,8 @@
-#include "input/rhythm.hpp"
+#include "tables/rhythm.hpp"
 
 #include <charconv>
 
-namespace packmpi::input {
+namespace packmpi::tables {
 
 std::optional<Rhythm> rhythm_of(std::string_view every) {
   if (every == "off") return Rhythm{};
@@ -24,4 +24,4 @@ std::optional<Rhythm> rhythm_of(std::string_view every) {
   return valid ? std::optional(Rhythm{.seconds = number * factor}) : std::nullopt;
 }
 
-}  // namespace packmpi::input
+}  // namespace packmpi::tables
