@@ -11,7 +11,6 @@
 namespace packmpi::geometry {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr std::size_t points = 24;
 
 struct Rule {
@@ -23,7 +22,7 @@ Rule gauss() {
   Rule rule;
   constexpr int n = static_cast<int>(points);
   for (std::size_t k = 0; k < points / 2; ++k) {
-    double x = elementary::cosine(pi * (static_cast<double>(k) + 0.75) / (n + 0.5));
+    double x = elementary::cosine(std::numbers::pi * (static_cast<double>(k) + 0.75) / (n + 0.5));
     double slope = 1.0;
     for (int turn = 0; turn < 10; ++turn) {
       double last = 1.0, now = x;
@@ -42,12 +41,13 @@ Rule gauss() {
 }
 
 // Of the disc of radius r the segment of height h.
-double segment(double r, double h) { return volume_below(2, r, r, std::clamp(h, 0.0, 2.0 * r)); }
+double disc_segment(double r, double h) { return volume_below(2, r, r, std::clamp(h, 0.0, 2.0 * r)); }
 
 // What two discs of radii s and t, whose centres are b apart and which cut each other, have in common.
 double lens(double s, double t, double b) {
   if (!(s > 0.0)) return 0.0;
-  return segment(s, (t - b + s) * (t + b - s) / (2.0 * b)) + segment(t, (s - b + t) * (s + b - t) / (2.0 * b));
+  return disc_segment(s, (t - b + s) * (t + b - s) / (2.0 * b)) +
+         disc_segment(t, (s - b + t) * (s + b - t) / (2.0 * b));
 }
 
 // u in [0, 1] with u u (3 - 2 u) = share.
@@ -74,14 +74,14 @@ struct Cut {
 
   // From the height of the centre up to z in [0, r].
   [[nodiscard]] double up_to(double z) const {
-    double volume = pi * cylinder * cylinder * std::min(z, inner);
+    double volume = std::numbers::pi * cylinder * cylinder * std::min(z, inner);
     if (z > inner && outer > inner) volume += of_lenses(std::min(z, outer));
     if (z > outer && cylinder > b) volume += whole(z) - whole(outer);
     return volume;
   }
 
  private:
-  [[nodiscard]] double whole(double z) const { return pi * z * (r * r - z * z / 3.0); }
+  [[nodiscard]] double whole(double z) const { return std::numbers::pi * z * (r * r - z * z / 3.0); }
 
   // A section begins and ends to be a lens with a power of a half: blended, both ends are smooth.
   [[nodiscard]] double of_lenses(double z) const {

@@ -17,6 +17,10 @@
 #include "tables/rhythm.hpp"
 
 namespace packmpi::input {
+
+using document::fail;
+using tables::toml_string;
+
 namespace {
 
 /// The scene under check, and a few lengths every check asks for.

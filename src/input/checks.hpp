@@ -1,9 +1,11 @@
 /// Cross-checks between keys: what no single range can see.
 #pragma once
-#include "input/document.hpp"
+#include "document/document.hpp"
 #include "input/input.hpp"
 
 namespace packmpi::input {
+
+using document::Document;
 
 /// What the vessel's shape asks of other keys, as soon as it is known. Throws Error(bad_input). Local.
 void check_shape(const Input& in, const Document& document);

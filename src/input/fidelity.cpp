@@ -12,6 +12,11 @@
 #include "input/values.hpp"
 
 namespace packmpi::input {
+
+using document::fail;
+using document::Node;
+using document::parse_value;
+
 namespace {
 
 /// How a pack is made. The preset's keys, in SI units.

@@ -5,10 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "input/document.hpp"
+#include "document/document.hpp"
 #include "input/input.hpp"
 
 namespace packmpi::input {
+
+using document::Document;
 
 /// A key and the value, as TOML, that a preset gives it.
 struct PresetValue {

@@ -9,8 +9,8 @@
 #include "base/error.hpp"
 #include "base/regular_file.hpp"
 #include "base/text.hpp"
+#include "document/document.hpp"
 #include "input/checks.hpp"
-#include "input/document.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"
@@ -19,6 +19,17 @@
 #include "tables/known_names.hpp"
 
 namespace packmpi::input {
+
+using document::describe;
+using document::Entry;
+using document::fail;
+using document::is_override;
+using document::List;
+using document::Node;
+using document::parse_value;
+using document::Table;
+using tables::toml_string;
+
 namespace {
 
 /// The names that may stand directly in `table`: keys and tables, in the key table's order.

@@ -2,11 +2,15 @@
 
 #include <string>
 
-#include "input/document.hpp"
+#include "document/document.hpp"
 #include "input/keys.hpp"
 #include "input/read.hpp"
 
 namespace packmpi::input {
+
+using document::describe;
+using document::parse_value;
+
 namespace {
 
 /// Text for a cell of a Markdown table.

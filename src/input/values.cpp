@@ -11,6 +11,13 @@
 #include "tables/units.hpp"
 
 namespace packmpi::input {
+
+using document::describe;
+using document::fail;
+using document::List;
+using document::parse_value;
+using tables::toml_string;
+
 namespace {
 
 using tables::number, tables::parse_scalar, tables::Scalar;

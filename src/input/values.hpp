@@ -2,10 +2,12 @@
 #pragma once
 #include <string>
 
-#include "input/document.hpp"
+#include "document/document.hpp"
 #include "input/keys.hpp"
 
 namespace packmpi::input {
+
+using document::Node;
 
 /// Checks the type, unit and range of `node` against `key` and stores it. Throws Error(bad_input).
 void store(const Key& key, const Node& node, Input& in);

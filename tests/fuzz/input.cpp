@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "document/document.hpp"
 #include "fuzz/demand.hpp"
-#include "input/document.hpp"
 #include "input/keys.hpp"
 #include "input/read.hpp"
 #include "scene/scene.hpp"
@@ -60,20 +60,20 @@ bool accepted(Action&& action) {
   }
 }
 
-double real(const input::Node& node) {
+double real(const document::Node& node) {
   const auto* whole = std::get_if<std::int64_t>(&node.value);
   return whole != nullptr ? static_cast<double>(*whole) : std::get<double>(node.value);
 }
 
-bool is_number(const input::Node& node) {
+bool is_number(const document::Node& node) {
   return std::holds_alternative<std::int64_t>(node.value) || std::holds_alternative<double>(node.value);
 }
 
 /// Whether the value of the effective input is the one asked for. A number with a unit is left to the unit's tests.
-bool same(const input::Node& asked, const input::Node& got) {
+bool same(const document::Node& asked, const document::Node& got) {
   if (is_number(asked)) return is_number(got) && real(asked) == real(got);
-  if (const auto* list = std::get_if<input::List>(&asked.value)) {
-    const auto* other = std::get_if<input::List>(&got.value);
+  if (const auto* list = std::get_if<document::List>(&asked.value)) {
+    const auto* other = std::get_if<document::List>(&got.value);
     return other != nullptr && std::ranges::equal(*list, *other, same);
   }
   if (std::holds_alternative<std::string>(asked.value) && is_number(got)) return true;
@@ -88,17 +88,17 @@ bool is_rewritten(const std::string& key) {
 }
 
 /// Every value of the document is a key's, and the effective input has it.
-void check_nothing_is_passed_over(const input::Table& table, const std::string& path,
-                                  const input::Document& effective) {
-  for (const input::Entry& entry : table) {
+void check_nothing_is_passed_over(const document::Table& table, const std::string& path,
+                                  const document::Document& effective) {
+  for (const document::Entry& entry : table) {
     const std::string here = (path.empty() ? "" : path + ".") + entry.name;
     if (here == "particles.diameter") continue;  // stands under radius, halved
     if (input::find_key(here) == nullptr) {
-      const auto* inner = std::get_if<input::Table>(&entry.node.value);
+      const auto* inner = std::get_if<document::Table>(&entry.node.value);
       demand(inner != nullptr, "an unknown key is accepted: " + here);
       check_nothing_is_passed_over(*inner, here, effective);
     } else if (!is_rewritten(here)) {
-      const input::Node* got = effective.find(here);
+      const document::Node* got = effective.find(here);
       demand(got != nullptr && same(entry.node, *got), "is not what was asked for: " + here);
     }
   }
@@ -108,9 +108,9 @@ void check_accepted(const Case& scene, const input::Input& in) {
   const input::Input again = input::parse(in.effective, effective_name, {});
   demand(again.effective == in.effective, "the effective input is read as another one");
 
-  input::Document asked(scene.scene, scene_name);
+  document::Document asked(scene.scene, scene_name);
   for (const std::string& assignment : scene.overrides.set) asked.set(assignment);
-  check_nothing_is_passed_over(asked.root(), "", input::Document(in.effective, effective_name));
+  check_nothing_is_passed_over(asked.root(), "", document::Document(in.effective, effective_name));
 
   Case more = scene;
   more.scene += "\nno_such_key = 1\n";

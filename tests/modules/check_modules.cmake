@@ -9,7 +9,7 @@ set(libraries
   "petsc.*[.]h=comm scene neighbor observe dynamics"
   "metis[.]h=scene"
   "hdf5.*[.]h|H5.*[.]h=disk pack"
-  "toml[+][+]/.*=input"
+  "toml[+][+]/.*=document"
   "CLI/.*=cli"
   "Random123/.*=base"
   "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"

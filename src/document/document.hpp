@@ -9,7 +9,7 @@
 
 #include "tables/units.hpp"
 
-namespace packmpi::input {
+namespace packmpi::document {
 
 struct Entry;
 struct Node;
@@ -66,9 +66,7 @@ class Document {
 /// The value for a message, on one line: "abc", 3, 0.5, a table, a list of 2.
 [[nodiscard]] std::string describe(const Node& node);
 
-using tables::toml_string;
-
 /// Throws Error(bad_input) "place: path: words".
 [[noreturn]] void fail(std::string_view place, std::string_view path, std::string_view words);
 
-}  // namespace packmpi::input
+}  // namespace packmpi::document

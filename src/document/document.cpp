@@ -1,4 +1,4 @@
-#include "input/document.hpp"
+#include "document/document.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "tables/units.hpp"
 
-namespace packmpi::input {
+namespace packmpi::document {
 namespace {
 
 constexpr int most_dots = 16;  // in one key; toml++ recurses on them, and ours have two
@@ -112,7 +112,7 @@ Document::Document(const std::string& text, const std::string& file) {
 
 void Document::set(const std::string& assignment) {
   const bool prints = std::ranges::none_of(assignment, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  const std::string place = std::string(command_line) + (prints ? assignment : toml_string(assignment));
+  const std::string place = std::string(command_line) + (prints ? assignment : tables::toml_string(assignment));
   const std::size_t equals = assignment.find('=');
   std::string_view path = text::trimmed(std::string_view(assignment).substr(0, equals));
   if (equals == std::string::npos || path.empty() || path.ends_with('.')) {
@@ -194,7 +194,7 @@ std::string describe(const Node& node) {
     std::string operator()(const Table&) const { return "a table"; }
     std::string operator()(const List& list) const { return fmt::format("a list of {}", list.size()); }
     std::string operator()(const std::string& text) const {
-      return toml_string(text.size() <= 60 ? text : text.substr(0, 57) + "...");
+      return tables::toml_string(text.size() <= 60 ? text : text.substr(0, 57) + "...");
     }
     std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
     std::string operator()(double real) const { return tables::number(real); }
@@ -208,4 +208,4 @@ void fail(std::string_view place, std::string_view path, std::string_view words)
   throw Error(ExitCode::bad_input, fmt::format("{}: {}: {}", place, path, words));
 }
 
-}  // namespace packmpi::input
+}  // namespace packmpi::document
