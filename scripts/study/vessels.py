@@ -21,7 +21,7 @@ import measuring
 DIAMETER = 0.01   # of the spheres [m]
 RATIOS = [4.0, 5.0, 6.0, 8.0, 10.0, 12.5, 15.0, 20.0, 25.0]
 PROFILE_OF = 15.0
-COLUMNS = ["ratio", "seed", "friction", "spheres", "porosity", "core_porosity", "floor_over_weight", "code", "seconds"]
+COLUMNS = ["ratio", "seed", "friction", "spheres", "porosity", "core_porosity", "height", "floor_over_weight", "code", "seconds"]
 SCENE = """fidelity = "balanced"
 [container]
 shape = "cylinder"
@@ -97,8 +97,17 @@ def row_of(folder, ratio, seed, friction):
     core = json.loads((folder / "bed.analysis.json").read_text())["radial_profile"]["core"]["solid_fraction"]
     run = json.loads((folder / "made.json").read_text())
     return {"ratio": ratio, "seed": seed, "friction": friction, "spheres": summary["particles"], "porosity": round(summary["porosity_bulk"], 5),
-            "core_porosity": round(1.0 - core, 5) if core else "", "floor_over_weight": round(summary["floor_force"] / summary["weight"], 4),
+            "core_porosity": round(1.0 - core, 5) if core else "", "height": summary["height"], "floor_over_weight": round(summary["floor_force"] / summary["weight"], 4),
             "code": run["code"], "seconds": round(run["seconds"], 1)}
+
+
+def janssen(ratio, height, share, friction):
+    """K with which the floor of a column bears that share of the weight: (1 - exp(-x)) / x, x = 4 mu K h / D."""
+    low, high = 1e-6, 1e3
+    for _ in range(100):
+        x = math.sqrt(low * high)
+        low, high = (x, high) if (1.0 - math.exp(-x)) / x > share else (low, x)
+    return low / (4.0 * friction * height / (ratio * DIAMETER))
 
 
 def mean(values):
@@ -112,8 +121,8 @@ def wide_limit(rows):
 
 def table(rows, options):
     limit = wide_limit(rows)
-    lines = ["| D/d | spheres | porosity | less its wide limit | Dixon | dense, loose | three d from the wall | floor / weight |",
-             "|---|---|---|---|---|---|---|---|"]
+    lines = ["| D/d | spheres | porosity | less its wide limit | Dixon | dense, loose | three d from the wall | floor / weight | Janssen's K |",
+             "|---|---|---|---|---|---|---|---|---|"]
     for ratio in sorted({row["ratio"] for row in rows}):
         of = [row for row in rows if row["ratio"] == ratio]
         x = 1.0 / ratio
@@ -121,7 +130,8 @@ def table(rows, options):
         core = [row["core_porosity"] for row in of if row["core_porosity"] != ""]
         curves = f"{dense(x):.3f}, {loose(x):.3f}" if x <= 0.256 else ""
         lines.append(f"| {ratio:g} | {len(of)} x {of[0]['spheres']:,} | {got:.4f} | {got - limit:.4f} | {dixon(x) - 0.4:.4f} | {curves} | "
-                     f"{f'{mean(core):.4f}' if core else ''} | {mean([row['floor_over_weight'] for row in of]):.2f} |")
+                     f"{f'{mean(core):.4f}' if core else ''} | {mean([row['floor_over_weight'] for row in of]):.2f} | "
+                     f"{mean([janssen(ratio, row['height'], row['floor_over_weight'], options.friction) for row in of]):.2f} |")
     lines += ["", f"Friction {options.friction:g}, wide limit {limit:.4f}. {measuring.made_by('scripts/study/vessels.py')}."]
     return "\n".join(lines)
 
@@ -180,7 +190,7 @@ def main():
     parser = argparse.ArgumentParser(description="Beds of equal spheres in cylinders.")
     parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS, help="D/d")
     parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--friction", type=float, default=0.1)
+    parser.add_argument("--friction", type=float, default=0.2)
     parser.add_argument("--program", type=Path, default=measuring.ROOT / "build" / "packmpi")
     parser.add_argument("--results", type=Path, default=measuring.ROOT / "results" / "vessels")
     parser.add_argument("--document", type=Path, default=measuring.ROOT / "doc" / "vessels.md")

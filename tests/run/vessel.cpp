@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -158,6 +159,21 @@ TEST(CylinderBed, ItsShellsAddUpToItsBulk) {
   EXPECT_LT(values[20], 0.62);                         // one
 }
 
+// Caps by another formula, summed in another precision and order.
+TEST(CylinderBed, ItsSolidFractionIsThatOfItsSpheresCutByPlanes) {
+  const Made& m = made();
+  long double solid = 0.0L;
+  for (std::size_t k = m.rows.id.size(); k-- > 0;) {
+    const long double r = m.rows.radius[k], z = m.rows.position[k][2];
+    const long double low = std::clamp(m.record.bulk.low - z, -r, r), high = std::clamp(m.record.bulk.high - z, -r, r);
+    const auto below = [&](long double h) { return pi * (r * r * h - h * h * h / 3.0L); };  // above the centre
+    solid += below(high) - below(low);
+  }
+  const double room = pi * 0.25 * diameter * diameter * (m.record.bulk.high - m.record.bulk.low);
+  EXPECT_GT(m.record.bulk.high, m.record.bulk.low);
+  EXPECT_NEAR(m.record.phi_bulk, static_cast<double>(solid) / room, 1e-9);
+}
+
 // De Klerk's core: as dense as a bed without walls.
 TEST(CylinderBed, IsInItsMiddleAsDenseAsABedWithoutWalls) {
   const double core = made().analysis["radial_profile"]["core"]["solid_fraction"];
@@ -171,6 +187,29 @@ TEST(CylinderBed, FloorAndWallBearItsWeight) {
   EXPECT_GT(m.record.floor_force, 0.5 * m.record.weight);
   EXPECT_LT(m.record.floor_force, 1.1 * m.record.weight);  // a bed that hardens rises, and the wall holds it down
   EXPECT_NEAR(m.record.rest.support, 1.0, 0.02);
+}
+
+// Janssen: of a column h high the floor bears the share (1 - exp(-x)) / x of the weight, x = 4 mu K h / D; the ratio of
+// stresses K lies between that of active and of passive beds.
+TEST(CylinderColumn, StandsOnItsWallMoreThanOnItsFloor) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  Options options;
+  options.folder = fs::temp_directory_path() / ("packmpi_column_" + std::to_string(::getppid()));
+  options.force = true;
+  options.verbosity = log::Verbosity::quiet;
+  const double friction = 0.2, wide = 0.08;
+  const input::Overrides narrow{.set = {"container.diameter=0.08", "container.height=0.6", "contact.friction=0.2"}};
+  const report::RunRecord record =
+      make_pack(comm, scene::build(input::parse(scene_text, "column.toml", narrow)), options);
+  comm.barrier();
+  if (comm.rank() == 0) fs::remove_all(options.folder);
+  const auto share = [&](double k) {
+    const double x = 4.0 * friction * k * record.height / wide;
+    return (1.0 - std::exp(-x)) / x;
+  };
+  EXPECT_LT(record.floor_force / record.weight, share(0.3));
+  EXPECT_GT(record.floor_force / record.weight, share(0.7));
+  EXPECT_NEAR(record.rest.support, 1.0, 0.02);
 }
 
 }  // namespace
