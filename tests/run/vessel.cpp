@@ -189,8 +189,8 @@ TEST(CylinderBed, FloorAndWallBearItsWeight) {
   EXPECT_NEAR(m.record.rest.support, 1.0, 0.02);
 }
 
-// Janssen: of a column h high the floor bears the share (1 - exp(-x)) / x of the weight, x = 4 mu K h / D; the ratio of
-// stresses K lies between that of active and of passive beds.
+// Janssen: of a column h high the floor bears the share (1 - exp(-x)) / x of the weight, x = 4 mu K h / D, with a ratio
+// of stresses K below 1; less than that of active beds where not all friction of the wall is used.
 TEST(CylinderColumn, StandsOnItsWallMoreThanOnItsFloor) {
   const comm::Comm comm(MPI_COMM_WORLD);
   Options options;
@@ -207,7 +207,7 @@ TEST(CylinderColumn, StandsOnItsWallMoreThanOnItsFloor) {
     const double x = 4.0 * friction * k * record.height / wide;
     return (1.0 - std::exp(-x)) / x;
   };
-  EXPECT_LT(record.floor_force / record.weight, share(0.3));
+  EXPECT_LT(record.floor_force / record.weight, share(0.2));
   EXPECT_GT(record.floor_force / record.weight, share(0.7));
   EXPECT_NEAR(record.rest.support, 1.0, 0.02);
 }
