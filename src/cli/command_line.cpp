@@ -167,6 +167,11 @@ void declare_convert(CLI::App& app, Request& request) {
          "above it (cut)")
       ->check(CLI::IsMember(std::vector<std::string>(trims.begin(), trims.end())))
       ->type_name("drop|cut");
+  app.add_option("--cut", conversion.cut,
+                 "take a specimen out: box:length=L,width=W,height=H, cylinder:diameter=D,height=H or "
+                 "sphere:diameter=D, with its middle at x=X,y=Y,z=Z or in that of the pack; particles wholly inside "
+                 "are kept, and its solid fraction is told")
+      ->type_name("SHAPE");
   app.add_option_function<std::string>(
          "--replicate", [&conversion](const std::string& text) { read_copies(text, conversion.copies); },
          "write so many copies side by side along x and y; periodic axes only")

@@ -10,7 +10,13 @@ std::string convert(const comm::Comm& comm, const Request& asked) {
   const exporters::Converted done = exporters::convert_pack(comm, request);
   std::string files;
   for (const std::string& file : done.files) files += (files.empty() ? "" : ", ") + file;
-  return fmt::format("{}: {} particles, {:.9g} m3, for {}\n", files, done.particles, done.volume, request.format);
+  std::string text =
+      fmt::format("{}: {} particles, {:.9g} m3, for {}\n", files, done.particles, done.volume, request.format);
+  if (!done.cut.empty()) {
+    text += fmt::format("cut out: {}; solid fraction {:.9f}, porosity {:.9f}, spheres cut by its sides\n", done.cut,
+                        done.cut_fraction, 1.0 - done.cut_fraction);
+  }
+  return text;
 }
 
 }  // namespace packmpi::cli

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "disk/files.hpp"
+#include "exporters/cut.hpp"
 #include "exporters/formats.hpp"
 #include "exporters/quote.hpp"
 #include "exporters/rows_file.hpp"
@@ -82,6 +83,16 @@ void check_copies(const ConvertRequest& request, const geometry::Container& box)
   }
 }
 
+void check_cut(const ConvertRequest& request) {
+  if (request.cut.empty()) return;
+  const char* other = request.trim != Trim::none ? "--trim" : "";
+  if (request.copies[0] * request.copies[1] > 1) other = "--replicate";
+  if (*other != '\0') {
+    refuse_request(
+        fmt::format("--cut {}: takes a specimen out of the pack as it is; give it without {}", request.cut, other));
+  }
+}
+
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
 scene::Scene scene_of(const pack::PackFile& file) {
   try {
@@ -143,13 +154,15 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   });
   pack::check_pack(comm, request.pack);
   check_copies(request, scene.container);
+  check_cut(request);
+  const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene);  // pure, as check_copies() is
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });
-  const Selection selection(*file, scene, request);
+  const Selection selection(*file, scene, request, cut);
   const Specimen specimen = survey(comm, *file, selection, names.request, scene);
   write_files(comm, names, format.make(specimen), selection);
-  Converted done{{names.request.file}, specimen.count, specimen.volume};
+  Converted done{{names.request.file}, specimen.count, specimen.volume, specimen.cut, specimen.cut_fraction};
   if (!names.companion.empty()) done.files.push_back(names.companion);
   return done;
 }

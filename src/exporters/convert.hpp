@@ -22,6 +22,8 @@ struct ConvertRequest {
   std::string format;  ///< a name of convert_formats()
   std::string file{};  ///< path of what is written; "": beside the pack, with the format's ending
   Trim trim = Trim::none;
+  std::string
+      cut{};  ///< a specimen inside the pack, "cylinder:diameter=0.15,height=0.3" (doc/vessels.md); "": all of it
   std::array<int, 2> copies{1, 1};  ///< side by side along x and y; more than one along periodic axes only
   bool force = false;               ///< existing files may be replaced
 };
@@ -30,7 +32,9 @@ struct ConvertRequest {
 struct Converted {
   std::vector<std::string> files;
   std::int64_t particles = 0;
-  double volume = 0.0;  ///< [m3] of the particles as spheres; 9 digits
+  double volume = 0.0;        ///< [m3] of the particles as spheres; 9 digits
+  std::string cut{};          ///< in words what was cut out; "": nothing
+  double cut_fraction = 0.0;  ///< its solid fraction, spheres cut by its sides, to 1e-9
 };
 
 /// One format, for help and documentation.

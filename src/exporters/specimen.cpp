@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "disk/scatter.hpp"
 #include "exporters/quote.hpp"
+#include "geometry/volume.hpp"
 #include "packmpi/version.hpp"
 
 namespace packmpi::exporters {
@@ -65,6 +66,7 @@ std::string axis_words(const Specimen& s, std::size_t axis) {
 }  // namespace
 
 bool Selection::kept(const pack::ParticleRow& row) const {
+  if (cut_.on()) return cut_.keeps(row.position, row.radius);
   const double centre = row.position[static_cast<std::size_t>(scene_->container.vertical())];
   switch (trim_) {
     case Trim::drop:
@@ -94,6 +96,7 @@ void Selection::visit_batch(std::int64_t copy, const pack::PackRows& rows,
     pack::ParticleRow row = row_of(rows, k);
     if (!kept(row)) continue;
     row.id += copy * file_->count() + 1;
+    if (cut_.on()) row.position = cut_.place(row.position);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (at[axis] == 0) continue;
       const double end = scene_->container.size[axis] * copies_[axis];  // rounding must not reach it
@@ -115,6 +118,38 @@ void Selection::visit(std::int64_t begin, std::int64_t end,
   }
 }
 
+std::int64_t Selection::solid_quanta(std::int64_t begin, std::int64_t end, double quanta_a_volume) const {
+  std::int64_t quanta = 0;
+  while (begin < end) {
+    const std::int64_t count = std::min(batch_rows, end - begin);
+    const pack::PackRows rows = read(begin, count);
+    for (std::size_t k = 0; k < rows.id.size(); ++k) {
+      quanta += std::llround(cut_.solid(rows.position[k], rows.radius[k]) * quanta_a_volume);
+    }
+    begin += count;
+  }
+  return quanta;
+}
+
+namespace {
+
+/// Collective. What is known of a specimen that is cut out; its container stands around it.
+void survey_cut(const comm::Comm& comm, const Selection& selection, const scene::Scene& scene, Specimen& s) {
+  const Cut& cut = selection.cut();
+  if (!cut.on()) return;
+  const disk::IdBlocks share{selection.places(), comm.size()};
+  const double whole = geometry::volume(scene.container.dimension, scene.sizes.largest());
+  std::int64_t quanta = 0;
+  comm::agree_on(comm, [&] {
+    quanta = selection.solid_quanta(share.begin(comm.rank()), share.begin(comm.rank() + 1), volume_quanta / whole);
+  });
+  s.cut = cut.words();
+  s.cut_fraction = static_cast<double>(comm.sum(quanta)) * (whole / volume_quanta) / cut.volume();
+  s.scene.container = cut.container();
+}
+
+}  // namespace
+
 Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Selection& selection,
                 const ConvertRequest& request, const scene::Scene& scene) {
   Specimen s;
@@ -132,7 +167,8 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
   s.copies = request.copies;
   s.count = comm.sum(found.count);
   s.volume = static_cast<double>(comm.sum(found.quanta)) * (sphere(scene.sizes.largest()) / volume_quanta);
-  s.size = scene.container.size;
+  survey_cut(comm, selection, scene, s);
+  s.size = s.scene.container.size;
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) s.size[axis] *= request.copies[axis];
   s.top = comm.max(found.top);
   s.widest = s.count > 0 ? comm.max(found.widest) : comm.max(1.0);
@@ -175,6 +211,12 @@ std::vector<std::string> header_lines(const Specimen& s) {
       box};
   if (s.trim == Trim::drop) lines.emplace_back("trimmed: particles that reach above H_d are left out");
   if (s.trim == Trim::cut) lines.emplace_back("trimmed: particles with their centre above H_d are left out");
+  if (!s.cut.empty()) {
+    lines.push_back(
+        fmt::format("cut out of the pack: {}, particles wholly inside; its solid fraction, spheres cut by "
+                    "its sides, is {:.9f}",
+                    s.cut, s.cut_fraction));
+  }
   if (s.copies[0] * s.copies[1] > 1) {
     lines.push_back(fmt::format("replicated: {} x {} copies of one periodic pack side by side, no larger random pack",
                                 s.copies[0], s.copies[1]));

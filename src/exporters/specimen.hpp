@@ -9,6 +9,7 @@
 
 #include "comm/comm.hpp"
 #include "exporters/convert.hpp"
+#include "exporters/cut.hpp"
 #include "pack/pack_file.hpp"
 #include "pack/pack_plan.hpp"
 #include "scene/scene.hpp"
@@ -26,12 +27,15 @@ struct Outgoing {
 class Selection {
  public:
   /// Both must live as long.
-  Selection(const pack::PackFile& file, const scene::Scene& scene, const ConvertRequest& request)
-      : pack_(request.pack), file_(&file), scene_(&scene), trim_(request.trim), copies_(request.copies) {}
+  Selection(const pack::PackFile& file, const scene::Scene& scene, const ConvertRequest& request, const Cut& cut)
+      : pack_(request.pack), file_(&file), scene_(&scene), trim_(request.trim), cut_(cut), copies_(request.copies) {}
 
   /// Places in the list: particles times copies. Trimmed particles have a place and are passed over.
   [[nodiscard]] std::int64_t places() const { return file_->count() * copies_[0] * copies_[1]; }
-  [[nodiscard]] bool trims() const { return trim_ != Trim::none; }
+  [[nodiscard]] bool trims() const { return trim_ != Trim::none || cut_.on(); }
+  [[nodiscard]] const Cut& cut() const { return cut_; }
+  /// Of the particles of places [begin, end) what is in the specimen that is cut out, a quantum each rounded.
+  [[nodiscard]] std::int64_t solid_quanta(std::int64_t begin, std::int64_t end, double quanta_a_volume) const;
   /// Calls take(row) for the particles of places [begin, end) in turn. Error(io_failure) if the pack is damaged.
   void visit(std::int64_t begin, std::int64_t end, const std::function<void(const pack::ParticleRow&)>& take) const;
 
@@ -45,6 +49,7 @@ class Selection {
   const pack::PackFile* file_;
   const scene::Scene* scene_;
   Trim trim_;
+  Cut cut_;
   std::array<int, 2> copies_;
 };
 
@@ -54,9 +59,11 @@ struct Specimen {
   std::string pack;     ///< file name of the pack, without folder
   std::string file;     ///< file name of what is written, without folder
   std::string version;  ///< of the program that made the pack
-  scene::Scene scene;   ///< the pack's own
+  scene::Scene scene;   ///< the pack's own; of a specimen that is cut out, in the container around it
   bool rotation = true;
-  double duration = 0.0;  ///< [s] simulated when the pack was made
+  std::string cut;            ///< what was cut out of the pack; "": nothing
+  double cut_fraction = 0.0;  ///< its solid fraction, spheres cut by its sides
+  double duration = 0.0;      ///< [s] simulated when the pack was made
   Trim trim = Trim::none;
   std::array<int, 2> copies{1, 1};
   std::int64_t count = 0;    ///< particles written

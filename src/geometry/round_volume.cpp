@@ -1,44 +1,14 @@
 #include "geometry/round_volume.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "base/elementary.hpp"
+#include "geometry/gauss.hpp"
 #include "geometry/volume.hpp"
 
 namespace packmpi::geometry {
 namespace {
-
-constexpr std::size_t points = 24;
-
-struct Rule {
-  std::array<double, points> x{}, weight{};  // on [0, 1]
-};
-
-// Gauss and Legendre: the roots of the polynomial by Newton's steps from Tricomi's guess.
-Rule gauss() {
-  Rule rule;
-  constexpr int n = static_cast<int>(points);
-  for (std::size_t k = 0; k < points / 2; ++k) {
-    double x = elementary::cosine(std::numbers::pi * (static_cast<double>(k) + 0.75) / (n + 0.5));
-    double slope = 1.0;
-    for (int turn = 0; turn < 10; ++turn) {
-      double last = 1.0, now = x;
-      for (int m = 2; m <= n; ++m) {
-        const double next = ((2.0 * m - 1.0) * x * now - (m - 1.0) * last) / m;
-        last = now, now = next;
-      }
-      slope = n * (x * now - last) / (x * x - 1.0);
-      x -= now / slope;
-    }
-    const double weight = 1.0 / ((1.0 - x * x) * slope * slope);  // half of it: the interval is [0, 1]
-    rule.x.at(k) = 0.5 * (1.0 - x), rule.x.at(points - 1 - k) = 0.5 * (1.0 + x);
-    rule.weight.at(k) = rule.weight.at(points - 1 - k) = weight;
-  }
-  return rule;
-}
 
 // Of the disc of radius r the segment of height h.
 double disc_segment(double r, double h) { return volume_below(2, r, r, std::clamp(h, 0.0, 2.0 * r)); }
@@ -85,11 +55,11 @@ struct Cut {
 
   // A section begins and ends to be a lens with a power of a half: blended, both ends are smooth.
   [[nodiscard]] double of_lenses(double z) const {
-    static const Rule rule = gauss();
+    const GaussRule& rule = gauss_rule();
     const double width = outer - inner;
     const double end = unblended((z - inner) / width);
     double sum = 0.0;
-    for (std::size_t k = 0; k < points; ++k) {
+    for (std::size_t k = 0; k < rule.x.size(); ++k) {
       const double u = end * rule.x.at(k);
       const double at = inner + width * (u * u * (3.0 - 2.0 * u));
       const double s = std::sqrt(std::max(0.0, (r - at) * (r + at)));

@@ -12,6 +12,8 @@
 #include <sstream>
 
 #include "exporters/law.hpp"
+#include "geometry/cut_volume.hpp"
+#include "geometry/round_volume.hpp"
 #include "input/read.hpp"
 #include "pack/samples.hpp"
 
@@ -97,17 +99,20 @@ TEST_F(Convert, SameBytesOnAnyNumberOfRanks) {
     const char* boundary;
     Trim trim;
     std::array<int, 2> copies;
+    const char* cut = "";
   };
   const std::string here = subfolder("here");
   const std::string one = subfolder("one");
   for (const Case& c : {Case{3, both_periodic, Trim::none, {1, 1}}, Case{3, both_periodic, Trim::cut, {2, 3}},
-                        Case{2, "\"wall\"", Trim::drop, {1, 1}}, Case{2, "\"periodic\"", Trim::none, {3, 1}}}) {
+                        Case{2, "\"wall\"", Trim::drop, {1, 1}}, Case{2, "\"periodic\"", Trim::none, {3, 1}},
+                        Case{3, both_periodic, Trim::none, {1, 1}, "cylinder:diameter=1,x=0.5,y=0.5"}}) {
     const std::string pack = make_pack(1001, c.dimension, c.boundary);
     for (const FormatWords& format : convert_formats()) {
       ConvertRequest request{.pack = pack,
                              .format = format.name,
                              .file = here + "/a" + format.ending,
                              .trim = c.trim,
+                             .cut = c.cut,
                              .copies = c.copies,
                              .force = true};
       const Converted done = convert_pack(comm_, request);
@@ -117,6 +122,7 @@ TEST_F(Convert, SameBytesOnAnyNumberOfRanks) {
       const Converted serial = convert_pack(alone_, request);
       EXPECT_EQ(done.particles, serial.particles);
       EXPECT_EQ(done.volume, serial.volume);
+      EXPECT_EQ(done.cut_fraction, serial.cut_fraction);
       for (std::size_t f = 0; f < done.files.size(); ++f) {
         EXPECT_GT(contents(done.files[f]).size(), 100u);
         EXPECT_TRUE(contents(done.files[f]) == contents(serial.files[f])) << done.files[f];
@@ -203,6 +209,82 @@ TEST_F(Convert, TrimmedAndReplicatedParticlesAreTheRightOnes) {
   }
 }
 
+/// A specimen: which spheres are wholly in it, and how much of one is.
+struct Specimens {
+  const char* words;
+  Vec3 low;
+  double volume;
+  std::function<bool(const Vec3&, double)> holds;
+  std::function<double(const Vec3&, double)> part;
+};
+
+// Spheres of the pack, and their images beyond its periodic sides, by the definition.
+TEST_F(Convert, ASpecimenThatIsCutOutHasWhatIsInIt) {
+  const std::string path = make_pack(3000, 3, both_periodic);
+  const PackRows pack = read_pack(path);
+  const double pi = 3.14159265358979323846;
+  const auto out = [](double x, double middle) { return std::abs(x - middle); };
+  const std::vector<Specimens> all{
+      {"cylinder:diameter=100cm,height=0.4,x=0.6,y=0.5,z=0.3",
+       {0.1, 0.0, 0.1},
+       pi * 0.25 * 0.4,
+       [&](const Vec3& x, double r) {
+         return std::hypot(x[0] - 0.6, x[1] - 0.5) + r <= 0.5 && out(x[2], 0.3) + r <= 0.2;
+       },
+       [](const Vec3& x, double r) {
+         return geometry::volume_in_cylinder(r, std::hypot(x[0] - 0.6, x[1] - 0.5), 0.5, 0.1 - x[2], 0.5 - x[2]);
+       }},
+      {"box:height=0.4,z=0.2",
+       {0.0, 0.0, 0.0},
+       12.0 * 10.0 * 0.4,
+       [&](const Vec3& x, double r) {
+         return out(x[0], 6.0) + r <= 6.0 && out(x[1], 5.0) + r <= 5.0 && out(x[2], 0.2) + r <= 0.2;
+       },
+       [](const Vec3& x, double r) {
+         return geometry::volume_in_box(r, {-x[0], -x[1], -x[2]}, {12.0 - x[0], 10.0 - x[1], 0.4 - x[2]});
+       }},
+      {"sphere:diameter=0.6,x=0.5,y=0.5",
+       {0.2, 0.2, 0.0},
+       pi * 0.036,
+       [&](const Vec3& x, double r) { return std::hypot(x[0] - 0.5, x[1] - 0.5, x[2] - 0.3) + r <= 0.3; },
+       [](const Vec3& x, double r) {
+         return geometry::volume_in_sphere(r, std::hypot(x[0] - 0.5, x[1] - 0.5, x[2] - 0.3), 0.3);
+       }}};
+  for (const Specimens& one : all) {
+    const Converted done = convert_pack(comm_, {.pack = path, .format = "csv", .cut = one.words, .force = true});
+    std::vector<std::vector<double>> expected;
+    long double solid = 0.0L;
+    for (std::size_t k = 0; k < pack.id.size(); ++k) {
+      const double r = pack.radius[k];
+      if (one.holds(pack.position[k], r)) {
+        expected.push_back(expected_row(pack, k, static_cast<std::int64_t>(k) + 1, {}));
+        for (std::size_t a = 0; a < 3; ++a) expected.back()[a + 1] -= one.low[a];
+      }
+      for (int image = 0; image < 9; ++image) {
+        Vec3 x = pack.position[k];
+        x[0] += 12.0 * (image % 3 - 1), x[1] += 10.0 * (image / 3 - 1);
+        solid += one.part(x, r);
+      }
+    }
+    EXPECT_GT(expected.size(), 20U);
+    EXPECT_EQ(done.particles, static_cast<std::int64_t>(expected.size())) << one.words;
+    EXPECT_NEAR(done.cut_fraction, static_cast<double>(solid) / one.volume, 1e-9) << one.words;
+    EXPECT_GT(done.cut_fraction, 0.0);
+    if (comm_.rank() == 0) {
+      const auto rows = rows_of(done.files[0]);
+      ASSERT_EQ(rows.size(), expected.size());
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (std::size_t c = 0; c < rows[k].size(); ++c) ASSERT_NEAR(rows[k][c], expected[k][c], 1e-14) << one.words;
+      }
+      EXPECT_TRUE(contains(contents(done.files[0]), "# cut out of the pack: a "));
+      EXPECT_FALSE(contains(contents(done.files[0]), "periodic"));
+    }
+    comm_.barrier();
+  }
+  const Converted whole = convert_pack(comm_, {.pack = path, .format = "lammps", .cut = all[0].words, .force = true});
+  EXPECT_TRUE(contains(contents(whole.files.at(1)), "region          mantle cylinder z 0.5 0.5 0.5 INF INF side in"));
+}
+
 TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
   for (const int dimension : {2, 3}) {
     const std::string path = make_pack(100, dimension, dimension == 3 ? "\"wall\", \"periodic\"" : "\"wall\"");
@@ -279,6 +361,19 @@ TEST_F(Convert, WhatIsAskedWronglyIsRefusedAndNothingIsWritten) {
   EXPECT_TRUE(contains(with([&](auto& r) { r.file = folder_.path(); }), "is a folder"));
   EXPECT_TRUE(contains(with([&](auto& r) { r.file = r.pack, r.force = true; }), "is the pack itself"));
   EXPECT_TRUE(contains(with([&](auto& r) { r.format = "lammps", r.file = folder_.file("a.in"); }), "second file"));
+  for (const auto& [cut, words] : std::vector<std::pair<const char*, const char*>>{
+           {"cilinder:diameter=1", "did you mean cylinder?"},
+           {"cylinder:height=0.2", "its diameter is missing"},
+           {"cylinder:diameter=1,radius=2", "a cylinder has no \"radius\"; there are diameter, height, x, y, z"},
+           {"cylinder:diameter=1,diameter=1", "diameter is there twice"},
+           {"cylinder:diameter=wide", "diameter is \"wide\"; give a length above 0"},
+           {"cylinder:diameter=-1", "diameter is \"-1\"; give a length above 0"},
+           {"cylinder:diameter=1,x=11.6", "from 11.1 to 12.1 m along x, and the container from 0 to 12 m"},
+           {"sphere:diameter=0.7", "along z"}}) {
+    EXPECT_TRUE(contains(with([&](auto& r) { r.cut = cut; }), words)) << cut;
+  }
+  EXPECT_TRUE(contains(with([](auto& r) { r.cut = "box:length=1", r.trim = Trim::cut; }), "give it without --trim"));
+  EXPECT_TRUE(contains(with([](auto& r) { r.cut = "box:length=1", r.copies = {2, 1}; }), "without --replicate"));
   ConvertRequest flat = csv;
   EXPECT_EQ(files_in(folder_.path()), 1u);
 
@@ -287,6 +382,9 @@ TEST_F(Convert, WhatIsAskedWronglyIsRefusedAndNothingIsWritten) {
   flat.pack = make_pack(20, 2, "\"periodic\"");
   flat.copies = {1, 2};
   EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "no second lateral axis"));
+  flat.copies = {1, 1};
+  flat.cut = "cylinder:diameter=1";
+  EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "cut out of packs in 3D"));
 }
 
 TEST_F(Convert, WhatCannotBeReadOrWrittenLeavesNothingBehind) {

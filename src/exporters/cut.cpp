@@ -1,0 +1,205 @@
+#include "exporters/cut.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "geometry/cut_volume.hpp"
+#include "geometry/round_volume.hpp"
+#include "geometry/volume.hpp"
+#include "tables/units.hpp"
+
+namespace packmpi::exporters {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+[[noreturn]] void refuse_cut(const std::string& words, const std::string& reason) {
+  throw Error(ExitCode::bad_input, fmt::format("--cut {}: {}", words, reason));
+}
+
+/// The names of a shape's lengths, those that it must have first.
+struct Names {
+  std::string shape;
+  std::vector<std::string> lengths;
+};
+
+Names names_of(const std::string& words, const std::string& shape, bool flat) {
+  const std::vector<Names> all{
+      {"box", {"length", "width", "height"}}, {"cylinder", {"diameter", "height"}}, {"sphere", {"diameter"}}};
+  for (const Names& names : all) {
+    if (names.shape != shape) continue;
+    if (!flat) return names;
+    if (shape == "box") return {"box", {"length", "height"}};
+    refuse_cut(words, fmt::format("a {} is cut out of packs in 3D; of one in 2D a box is", shape));
+  }
+  const auto near = text::closest(shape, std::vector<std::string>{"box", "cylinder", "sphere"});
+  refuse_cut(words, fmt::format("\"{}\" is no shape; there are box, cylinder and sphere{}", shape,
+                                near ? fmt::format(" (did you mean {}?)", *near) : ""));
+}
+
+double read_metres(const std::string& words, const std::string& name, const std::string& value, bool place) {
+  tables::Scalar read = tables::parse_scalar(value, tables::length);
+  if (!read.value) {
+    char* end = nullptr;
+    const double plain = std::strtod(value.c_str(), &end);
+    if (!value.empty() && *end == '\0') read.value = plain;
+  }
+  if (read.value && std::isfinite(*read.value) && (place || *read.value > 0.0)) return *read.value;
+  refuse_cut(words,
+             fmt::format("{} is \"{}\"; give a length{} such as 0.15 or 15cm", name, value, place ? "" : " above 0"));
+}
+
+/// What stands behind the colon, by its names.
+std::map<std::string, double> read_lengths(const std::string& words, const std::string& list, const Names& names,
+                                           bool flat) {
+  std::vector<std::string> known = names.lengths;
+  for (const char* axis : {"x", "y", "z"}) {
+    if (!(flat && *axis == 'z')) known.emplace_back(axis);
+  }
+  std::map<std::string, double> found;
+  for (std::size_t begin = 0; begin < list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string item = list.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string name(text::trimmed(item.substr(0, equals)));
+    if (std::ranges::find(known, name) == known.end()) {
+      std::string there;
+      for (const std::string& one : known) there += (there.empty() ? "" : ", ") + one;
+      refuse_cut(words, fmt::format("a {} has no \"{}\"; there are {}", names.shape, name, there));
+    }
+    const std::string value(text::trimmed(equals < item.size() ? item.substr(equals + 1) : ""));
+    if (!found.emplace(name, read_metres(words, name, value, name.size() == 1)).second) {
+      refuse_cut(words, fmt::format("{} is there twice", name));
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Cut::Cut(const std::string& words, const scene::Scene& scene) : source_(scene.container) {
+  read(words);
+  for (std::size_t a = 0; a < 3; ++a) low_[a] = middle_[a] - 0.5 * size_[a];
+  const double slack = 1e-12 * *std::ranges::max_element(source_.size);
+  Vec3 room = source_.size;
+  if (source_.lid) room[static_cast<std::size_t>(source_.vertical())] = *source_.lid;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(source_.dimension); ++a) {
+    if (low_[a] >= -slack && low_[a] + size_[a] <= room[a] + slack) continue;
+    refuse_cut(words,
+               fmt::format("it reaches from {:g} to {:g} m along {}, and the container from 0 to {:g} m; make it "
+                           "smaller or move it",
+                           low_[a], low_[a] + size_[a], "xyz"[a], room[a]));
+  }
+  if (source_.is_box()) return;
+  const double around = source_.radius() + slack;
+  const double x = std::abs(middle_[0] - source_.radius()), y = std::abs(middle_[1] - source_.radius());
+  const double farthest =
+      shape_ == Shape::box ? std::hypot(x + 0.5 * size_[0], y + 0.5 * size_[1]) : std::hypot(x, y) + 0.5 * size_[0];
+  if (farthest > around) {
+    refuse_cut(words, fmt::format("it reaches {:g} m from the axis of the cylinder, whose radius is {:g} m; make it "
+                                  "smaller or move it",
+                                  farthest, source_.radius()));
+  }
+}
+
+void Cut::read(const std::string& words) {
+  const bool flat = source_.dimension == 2;
+  const std::size_t colon = std::min(words.find(':'), words.size());
+  const Names names = names_of(words, words.substr(0, colon), flat);
+  const auto found = read_lengths(words, colon < words.size() ? words.substr(colon + 1) : "", names, flat);
+  const auto length = [&](const std::string& name, double otherwise) {
+    const auto at = found.find(name);
+    return at == found.end() ? otherwise : at->second;
+  };
+  const auto up = static_cast<std::size_t>(source_.vertical());
+  const double height = source_.lid.value_or(source_.height());
+  if (names.shape != "box" && !found.contains("diameter")) refuse_cut(words, "its diameter is missing");
+  if (names.shape == "box") {
+    shape_ = Shape::box;
+    size_ = {length("length", source_.size[0]), length("width", source_.size[1]), 0.0};
+    size_[up] = length("height", height);
+  } else {
+    shape_ = names.shape == "cylinder" ? Shape::cylinder : Shape::sphere;
+    size_.fill(length("diameter", 0.0));
+    if (shape_ == Shape::cylinder) size_[2] = length("height", height);
+  }
+  middle_ = {length("x", 0.5 * source_.size[0]), length("y", 0.5 * source_.size[1]), 0.0};
+  middle_[up] = length(std::string(1, "xyz"[up]), 0.5 * height);
+}
+
+bool Cut::keeps(const Vec3& x, double r) const {
+  const Vec3 d{x[0] - middle_[0], x[1] - middle_[1], x[2] - middle_[2]};
+  if (shape_ == Shape::none) return true;
+  if (shape_ == Shape::sphere) return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + r <= 0.5 * size_[0];
+  const auto fits = [&](std::size_t a) { return std::abs(d[a]) + r <= 0.5 * size_[a]; };
+  if (source_.dimension == 2) return fits(0) && fits(1);
+  if (shape_ == Shape::cylinder) return std::sqrt(d[0] * d[0] + d[1] * d[1]) + r <= 0.5 * size_[0] && fits(2);
+  return fits(0) && fits(1) && fits(2);
+}
+
+double Cut::inside(const Vec3& d, double r) const {
+  const Vec3 half{0.5 * size_[0], 0.5 * size_[1], 0.5 * size_[2]};
+  if (shape_ == Shape::sphere) {
+    return geometry::volume_in_sphere(r, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), half[0]);
+  }
+  if (shape_ == Shape::cylinder) {
+    return geometry::volume_in_cylinder(r, std::sqrt(d[0] * d[0] + d[1] * d[1]), half[0], -half[2] - d[2],
+                                        half[2] - d[2]);
+  }
+  const Vec3 low{-half[0] - d[0], -half[1] - d[1], -half[2] - d[2]},
+      high{half[0] - d[0], half[1] - d[1], half[2] - d[2]};
+  if (source_.dimension == 2) return geometry::area_in_rectangle(r, low, high);
+  return geometry::volume_in_box(r, low, high);
+}
+
+double Cut::solid(const Vec3& x, double r) const {
+  const auto images = [&](std::size_t a) { return a < 2 && source_.periodic[a] ? 1 : 0; };
+  double sum = 0.0;
+  for (int i = -images(0); i <= images(0); ++i) {
+    for (int k = -images(1); k <= images(1); ++k) {
+      sum += inside(
+          {x[0] + i * source_.size[0] - middle_[0], x[1] + k * source_.size[1] - middle_[1], x[2] - middle_[2]}, r);
+    }
+  }
+  return sum;
+}
+
+double Cut::volume() const {
+  switch (shape_) {
+    case Shape::cylinder:
+      return geometry::volume(2, 0.5 * size_[0]) * size_[2];
+    case Shape::sphere:
+      return geometry::volume(3, 0.5 * size_[0]);
+    default:
+      return source_.dimension == 2 ? size_[0] * size_[1] : size_[0] * size_[1] * size_[2];
+  }
+}
+
+geometry::Container Cut::container() const {
+  geometry::Container box;
+  box.dimension = source_.dimension;
+  box.size = size_;
+  if (shape_ == Shape::cylinder) box.shape = geometry::Shape::cylinder;
+  return box;
+}
+
+std::string Cut::words() const {
+  if (shape_ == Shape::cylinder)
+    return fmt::format("a cylinder of diameter {:g} m and height {:g} m", size_[0], size_[2]);
+  if (shape_ == Shape::sphere) return fmt::format("a sphere of diameter {:g} m", size_[0]);
+  if (source_.dimension == 2) return fmt::format("a rectangle of {:g} x {:g} m", size_[0], size_[1]);
+  return fmt::format("a box of {:g} x {:g} x {:g} m", size_[0], size_[1], size_[2]);
+}
+
+}  // namespace packmpi::exporters

@@ -1,0 +1,44 @@
+/// A specimen that is taken out of a pack: `convert --cut`. Private to this module.
+#pragma once
+#include <string>
+
+#include "pack/pack_plan.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::exporters {
+
+/// A box, a cylinder or a sphere inside a pack's container. Particles that are wholly inside it are kept, and move with
+/// its lower corner to the origin. Local.
+class Cut {
+ public:
+  /// Nothing is cut: all is kept, where it is.
+  Cut() = default;
+  /// From "cylinder:diameter=15cm,height=0.3,x=0.5". Throws Error(bad_input) that begins with "--cut" on words that
+  /// are none, and on a specimen that does not lie inside the container of `scene`.
+  Cut(const std::string& words, const scene::Scene& scene);
+
+  [[nodiscard]] bool on() const { return shape_ != Shape::none; }
+  [[nodiscard]] bool keeps(const Vec3& x, double r) const;
+  /// Seen from the specimen's lower corner [m].
+  [[nodiscard]] Vec3 place(const Vec3& x) const { return {x[0] - low_[0], x[1] - low_[1], x[2] - low_[2]}; }
+  /// Of a sphere of the pack, and its images, the part in the specimen [m3]; 2D: of a disc [m2]. To 1e-9 of its radius
+  /// cubed.
+  [[nodiscard]] double solid(const Vec3& x, double r) const;
+  [[nodiscard]] double volume() const;  ///< [m3] of the specimen; 2D: [m2]
+  /// What stands around it: walls and no periods; around a sphere the cube.
+  [[nodiscard]] geometry::Container container() const;
+  /// "a cylinder of diameter 0.15 m and height 0.3 m"
+  [[nodiscard]] std::string words() const;
+
+ private:
+  enum class Shape { none, box, cylinder, sphere };
+  void read(const std::string& words);
+  [[nodiscard]] double inside(const Vec3& from_centre, double r) const;
+
+  Shape shape_ = Shape::none;
+  geometry::Container source_;  // that of the pack
+  Vec3 size_{};                 // of the box around it
+  Vec3 middle_{}, low_{};
+};
+
+}  // namespace packmpi::exporters
