@@ -17,6 +17,7 @@ GALLERY = {
     "quickstart": ("quickstart", [], 720, "layer"),
     "gallery_soil": ("grading", ['container.size=["90 mm","90 mm","70 mm"]'], 560, "radius"),
     "gallery_specimen": ("confined", [], 560, "contacts"),
+    "gallery_vessel": ("pebbles", ['container.height="600 mm"'], 560, "layer"),
     "gallery_concrete": ("concrete", [], 560, "radius"),
     "gallery_chains": ("periodic_2d", ["output.contacts=true", "dynamics.time_step=5e-5", 'particles.radius={distribution="uniform",weighting="number",min=0.006,max=0.012}'], 560, "contacts"),
 }

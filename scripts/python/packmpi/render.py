@@ -146,19 +146,19 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     from . import render_3d  # VTK is needed for this only
     image = render_3d.image_3d(pack, colouring.rgba(), pixels)
     height, width = image.shape[:2]
-    dpi, strip = 100, 110  # pixels for the colour bar at the right
+    dpi, strip, foot = 100, 110, 20  # pixels for the colour bar at the right, and for the note below
     width_all = max(width + strip, 400)  # a tall pack is narrow; its caption is not
     words = Caption(pack, width_all)
     head = words.height
-    figure = plt.figure(figsize=(width_all / dpi, (height + head) / dpi), dpi=dpi)
-    across, up = width_all, height + head
+    figure = plt.figure(figsize=(width_all / dpi, (height + head + foot) / dpi), dpi=dpi)
+    across, up = width_all, height + head + foot
     left = (width_all - width - strip) // 2
-    axes = figure.add_axes([left / across, 0.0, width / across, height / up])
+    axes = figure.add_axes([left / across, foot / up, width / across, height / up])
     axes.imshow(image, interpolation="none")
     axes.axis("off")
     colouring.bar(figure, figure.add_axes([(left + width + 22) / across, 0.14, 16 / across, 0.66]))
     words.draw(figure)
-    figure.text(12 / across, 8 / up, "red: target height" if pack.lid is None else LID_WORDS, fontsize=9, color=LID if pack.lid is not None else TARGET)
+    figure.text(12 / across, 5 / up, "red: target height" if pack.lid is None else LID_WORDS, fontsize=9, color=LID if pack.lid is not None else TARGET)
     figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
     plt.close(figure)
 
