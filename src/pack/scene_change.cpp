@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "input/read.hpp"
+#include "input/words.hpp"
 #include "packmpi/version.hpp"
 
 namespace packmpi::pack {
@@ -60,6 +61,25 @@ std::string forbidden_changes(const std::string& before, const std::string& now,
     words += fmt::format("{}{}: {} before, {} now", words.empty() ? "" : "; ", key, was, is);
   }
   return words;
+}
+
+std::string container_change(const input::Container& before, const input::Container& now) {
+  if (now.dimension != before.dimension) {
+    return fmt::format("a container in {}D, the scene in one in {}D", before.dimension, now.dimension);
+  }
+  if (now.shape != before.shape) {
+    return fmt::format("a container of the shape \"{}\", the scene in one of the shape \"{}\"; give that of the pack",
+                       input::word(before.shape), input::word(now.shape));
+  }
+  for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
+    if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;
+    return fmt::format(
+        "a container of {:g} m along {} with boundary \"{}\", the scene in one of {:g} m with \"{}\"; "
+        "give that of the pack",
+        before.size[axis], "xy"[axis], input::word(before.boundary[axis]), now.size[axis],
+        input::word(now.boundary[axis]));
+  }
+  return "";
 }
 
 bool is_this_program(const Writer& writer) { return writer.version == version() && writer.git == git_id(); }

@@ -2,6 +2,8 @@
 #pragma once
 #include <string>
 
+#include "input/input.hpp"
+
 namespace packmpi::pack {
 
 /// How far the run is whose scene is compared.
@@ -12,6 +14,10 @@ enum class RunIs { unfinished, finished };
 /// (layers.maximum, if there is no final stage); of a finished one not whether it writes contacts. Local.
 [[nodiscard]] std::string forbidden_changes(const std::string& before, const std::string& now,
                                             RunIs run = RunIs::unfinished);
+
+/// In what other container particles would be cut or lose their neighbours: "a container of .., the scene in one of ..;
+/// give that of the pack". Empty: floor and walls are the same. Local.
+[[nodiscard]] std::string container_change(const input::Container& before, const input::Container& now);
 
 /// Who wrote a checkpoint or a pack, of which scene.
 struct Writer {

@@ -9,7 +9,6 @@
 
 #include "base/log.hpp"
 #include "input/read.hpp"
-#include "input/words.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
 #include "pack/scene_change.hpp"
@@ -28,29 +27,6 @@ constexpr const char* with_springs = "taken over, with what contacts remember";
 
 std::string path_of(const input::Input& in) {
   return (std::filesystem::path(in.file).parent_path() / in.start->pack).string();
-}
-
-// The same floor and walls, or particles would be cut or lose their neighbours.
-void check_container(const scene::Scene& scene, const input::Input& source) {
-  const input::Container& now = scene.in.container;
-  const input::Container& before = source.container;
-  if (now.dimension != before.dimension) {
-    refuse(scene, fmt::format("start.pack: is a pack in {}D, the scene is in {}D", before.dimension, now.dimension));
-  }
-  if (now.shape != before.shape) {
-    refuse(scene,
-           fmt::format("start.pack: is in a container of the shape \"{}\", the scene in one of the shape \"{}\"; "
-                       "give that of the pack",
-                       input::word(before.shape), input::word(now.shape)));
-  }
-  for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
-    if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;
-    refuse(scene, fmt::format("start.pack: is in a container of {:g} m along {} with boundary \"{}\", the scene in one "
-                              "of {:g} m with \"{}\"; give that of the pack",
-                              before.size[axis], "xy"[axis],
-                              before.boundary[axis] == input::Boundary::wall ? "wall" : "periodic", now.size[axis],
-                              now.boundary[axis] == input::Boundary::wall ? "wall" : "periodic"));
-  }
 }
 
 // Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
@@ -185,7 +161,8 @@ void take_over(Bed& bed) {
     if (report::hexadecimal(seal) != scene.in.start->digest) refuse(scene, "start.pack: was changed while it was read");
     slice = pack::read_slice(path, bed.comm.rank(), bed.comm.size());
     source = input::parse(slice.scene, path, {});
-    check_container(scene, source);
+    const std::string moved = pack::container_change(source.container, scene.in.container);
+    if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
     check_sides(scene, slice.confined);
     for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
   });
