@@ -138,13 +138,16 @@ TEST(Filling, WhatWeightWillAddIsForeseen) {
   filling.on = true;
   filling.target = 0.60;
   const Knob alone = next_knob(filling, {});
-  EXPECT_EQ(next_knob(filling, {.sample = 0.001, .now = 0.0, .next = 0.001}), alone);
-  const Knob deep = next_knob(filling, {.sample = 0.001, .now = 0.0, .next = 0.004});
+  EXPECT_EQ(next_knob(filling, {.sample = 0.001, .ordered = 0.001, .now = 0.0, .next = 0.001}), alone);
+  const Knob deep = next_knob(filling, {.sample = 0.001, .ordered = 0.001, .now = 0.0, .next = 0.004});
   EXPECT_NEAR(deep, knob_for(filling, 0.597), 1e-15);
   EXPECT_GT(deep, alone);
+  // Under stress sample and bed gain alike; what the sample gains before it counts only for what is measured then.
+  EXPECT_EQ(next_knob(filling, {.sample = 0.001, .ordered = 0.009, .now = 0.0, .next = 0.009}), alone);
   filling.layer_knobs = {alone};
   const Slab slab{2.0, 12.0, 1.0};
-  correct(filling, 15.0, slab, filled_at(filling, alone) + 0.002, {.sample = 0.001, .now = 0.003, .next = 0.001});
+  correct(filling, 15.0, slab, filled_at(filling, alone) + 0.002,
+          {.sample = 0.001, .ordered = 0.001, .now = 0.003, .next = 0.001});
   EXPECT_NEAR(filling.bias, 0.0, 1e-15);
   EXPECT_NEAR(filling.knob, alone, 1e-12);
 }
