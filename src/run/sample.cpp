@@ -96,10 +96,10 @@ class Onlooker final : public Attendant {
  public:
   explicit Onlooker(const Bed& bed) : bed_(bed) {}
   void relaxation_started() override {  // again when a lid comes
-    if (filled_ == 0.0) filled_ = measured();
+    if (filled_ == 0.0) filled_ = solid_fraction();
   }
   [[nodiscard]] double filled() const noexcept { return filled_; }
-  [[nodiscard]] double measured() const {
+  [[nodiscard]] double solid_fraction() const {
     return observe::density(bed_.comm, bed_.store, bed_.scene, bed_.bulk()).phi_bulk;
   }
 
@@ -144,7 +144,7 @@ control::Trial try_knob(const Sample& sample, control::Knob knob) {
   Onlooker onlooker(bed);
   fill(bed, onlooker);
   if (is_confined(scene)) confine_bed(bed, onlooker);
-  const double relaxed = onlooker.measured();
+  const double relaxed = onlooker.solid_fraction();
   const double filled = onlooker.filled() > 0.0 ? onlooker.filled() : relaxed;
   const observe::Contacts contacts =
       observe::contacts(alone, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
