@@ -81,11 +81,13 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
 /// than an eighth of the column.
 double room_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
   constexpr int side = 32;
-  const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(column / maps.counts[0]);
+  const std::int64_t row = column / maps.counts[0];
+  const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(row);
   int inside = 0;
   for (int k = 0; k < side * side; ++k) {
+    const int line = k / side;
     const double x = (ix + (k % side + 0.5) / side) * maps.widths[0];
-    const double y = (iy + (k / side + 0.5) / side) * maps.widths[1];
+    const double y = (iy + (line + 0.5) / side) * maps.widths[1];
     if (box.holds(x, y, 0.0)) ++inside;
   }
   if (inside < side * side / 8) return 0.0;

@@ -84,11 +84,12 @@ std::vector<std::int64_t> Ownership::room() const {
   std::vector<std::int64_t> points;
   points.reserve(columns_.size());
   for (const geometry::ColumnIndex column : columns_) {
-    const auto ix = static_cast<double>(column % grid_.counts()[0]),
-               iy = static_cast<double>(column / grid_.counts()[0]);
+    const geometry::ColumnIndex row = column / grid_.counts()[0];
+    const auto ix = static_cast<double>(column % grid_.counts()[0]), iy = static_cast<double>(row);
     std::int64_t inside = 0;
     for (int k = 0; k < side * side; ++k) {
-      if (grid_.box().holds((ix + (k % side + 0.5) / side) * wx, (iy + (k / side + 0.5) / side) * wy, 0.0)) ++inside;
+      const int line = k / side;
+      if (grid_.box().holds((ix + (k % side + 0.5) / side) * wx, (iy + (line + 0.5) / side) * wy, 0.0)) ++inside;
     }
     points.push_back(inside);
   }
