@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <utility>
 
 #include "packmpi/packmpi.hpp"
 
@@ -175,7 +176,7 @@ PYBIND11_MODULE(_core, module) {
   define_functions(module);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const Failure& failure) {
       const py::object make = py::module_::import("packmpi.problem").attr("of_failure");
       const py::object error = make(failure.code(), failure.what(), failure.file(), failure.line(), failure.key());
