@@ -118,6 +118,44 @@ void allow_diameters(Json& particles) {
   particles["oneOf"] = Json::array({with("radius"), with("diameter")});
 }
 
+Json array_of(Json properties, Json required) {
+  return {{"type", "array"},
+          {"items",
+           {{"type", "object"},
+            {"additionalProperties", false},
+            {"properties", std::move(properties)},
+            {"required", std::move(required)}}}};
+}
+
+// Arrays of tables (input/mixture.cpp); with components, [particles] need not have all that they say.
+void allow_components(Json& root) {
+  Json& all = root["properties"];
+  const Json number{{"type", "number"}, {"minimum", 0}}, word{{"type", "string"}};
+  Json component{{"name", word}, {"share", number}};
+  for (const char* name : {"density", "youngs_modulus", "poisson_ratio", "radius", "diameter"})
+    component[name] = all["particles"]["properties"][name];
+  Json pair{{"components", {{"type", "array"}, {"items", word}, {"minItems", 2}, {"maxItems", 2}}}};
+  for (const char* name : {"friction", "damping_ratio", "restitution", "rolling_friction", "twisting_friction"})
+    component[name] = pair[name] = all["contact"]["properties"][name];
+  component["wall_friction"] = all["contact"]["properties"]["wall_friction"];
+  Json stratum{{"name", word}, {"top", all["layers"]["properties"]["gap"]}, {"mass", number}};
+  stratum["top"]["description"] = "Height where the stratum ends. [m]";
+  stratum["shares"] = {{"type", "object"}, {"additionalProperties", number}};
+  all["component"] = array_of(component, Json::array({"name"}));
+  all["pair"] = array_of(pair, Json::array({"components"}));
+  all["stratum"] = array_of(stratum, Json::array());
+  Json whole{{"required", all["particles"]["required"]}, {"oneOf", all["particles"]["oneOf"]}};
+  all["particles"].erase("required");
+  all["particles"].erase("oneOf");
+  Json& required = root["required"];
+  required.erase(std::remove(required.begin(), required.end(), "particles"), required.end());
+  Json rule;
+  rule["if"]["not"]["required"] = Json::array({"component"});
+  rule["then"]["required"] = Json::array({"particles"});
+  rule["then"]["properties"]["particles"] = std::move(whole);
+  root["allOf"] = Json::array({rule});
+}
+
 }  // namespace
 
 std::string scene_schema() {
@@ -136,6 +174,7 @@ std::string scene_schema() {
   }
   require_of_layers(root);
   allow_diameters(root["properties"]["particles"]);
+  allow_components(root);
   return root.dump(2) + "\n";
 }
 

@@ -143,6 +143,14 @@ void Document::erase(std::string_view path) {
   }
 }
 
+std::optional<Node> Document::take(std::string_view path) {
+  const Node* node = find(path);
+  if (node == nullptr) return std::nullopt;
+  Node taken = *node;
+  erase(path);
+  return taken;
+}
+
 bool Document::rename(std::string_view path, const std::string& name) {
   Table* table = std::get_if<Table>(&root_.value);
   while (table != nullptr) {

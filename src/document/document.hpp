@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -43,6 +44,8 @@ class Document {
   void put(std::string_view path, Node value);
   /// Takes the entry at "a.b" out, if there is one.
   void erase(std::string_view path);
+  /// The same, and gives its node away. Null: there is none.
+  std::optional<Node> take(std::string_view path);
 
   /// Gives the entry at "a.b" the name `name`, in place. False: there is none.
   bool rename(std::string_view path, const std::string& name);

@@ -62,7 +62,11 @@ ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const part
   const plain::Touch touch = plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
   const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
   const Vec3 vi = store.velocity(i), vj = store.velocity(j), wi = store.spin(i), wj = store.spin(j);
-  Meeting at{plain::reduced_of_pair(law.mass_factor, k, radii),
+  const bool mixture = scene.features.mixture;
+  const particles::Substance a = mixture ? store.substance(i) : particles::Substance{};
+  const particles::Substance b = mixture ? store.substance(j) : particles::Substance{};
+  Meeting at{mixture ? plain::reduced_of_mixed(k, a.inverse_mass + b.inverse_mass)
+                     : plain::reduced_of_pair(law.mass_factor, k, radii),
              touch.normal,
              touch.bend,
              touch.gap < 0.0 ? 0.0 : touch.gap,
@@ -73,7 +77,7 @@ ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const part
   at.v = {vj[0] - vi[0], vj[1] - vi[1], vj[2] - vi[2]};
   at.s = sum(scaled(store.radius(j), vector_of(wj)), store.radius(i), vector_of(wi));
   at.spin = {wj[0] - wi[0], wj[1] - wi[1], wj[2] - wi[2]};
-  return resolve(scene, law, law.pair, at, stored, entry);
+  return resolve(scene, law, law.of_pair(a.code + b.code), at, stored, entry);
 }
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
@@ -84,7 +88,9 @@ ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const part
   Vec3 v = store.velocity(i);
   for (std::size_t a = 0; a < 3; ++a) v[a] = velocity[a] - v[a];
   const Vector w = vector_of(store.spin(i));
-  const Meeting at{plain::reduced_of_wall(law.mass_factor, k, r),
+  const particles::Substance made_of = scene.features.mixture ? store.substance(i) : particles::Substance{};
+  const Meeting at{scene.features.mixture ? plain::Reduced{r, 1.0 / made_of.inverse_mass}
+                                          : plain::reduced_of_wall(law.mass_factor, k, r),
                    vector_of(normal),
                    0.0,
                    distance < r ? r - distance : 0.0,
@@ -92,7 +98,7 @@ ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const part
                    scaled(r, w),
                    scaled(-1.0, w),
                    {}};
-  return resolve(scene, law, law.wall, at, stored, entry);
+  return resolve(scene, law, law.of_wall(made_of.code), at, stored, entry);
 }
 
 }  // namespace packmpi::dynamics

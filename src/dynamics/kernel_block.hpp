@@ -12,7 +12,8 @@ template <Features F>
 struct Memory {
   static constexpr particles::Layout layout = F.layout();
   static constexpr int stride = layout.stride;
-  static constexpr int chunks = layout.dimension == 3 && layout.rotation ? 3 : 2;  // vectors of four a record
+  static constexpr int chunks =  // vectors of four a record
+      (layout.dimension == 3 && layout.rotation ? 3 : 2) + (F.mixture ? 1 : 0);
   static constexpr int rows = 4 * chunks;
   static constexpr int stored = scene::stored_doubles(F);
   static constexpr int accumulators = accumulators_of(layout);
@@ -75,6 +76,9 @@ struct Memory {
   }
 };
 
+/// Constants of the law that differ from pair to pair of components, in the order of Constants.
+constexpr int pair_constants = 7;
+
 /// Pairs (or wall contacts) in flight. Rows of `in` are the fields of a record, combined over the pair; of `again`,
 /// those that are read a second time; of `out`, accumulators of the first; of `own`, those of the second that are not
 /// the first's; of `stored`, what the contact keeps.
@@ -91,6 +95,7 @@ struct Block {
   alignas(64) std::int64_t out[M::accumulators][row];
   alignas(64) std::int64_t own[M::any_own ? M::accumulators : 1][row];
   alignas(64) double stored[M::stored > 0 ? M::stored : 1][row];
+  alignas(64) double law[F.mixture ? pair_constants : 1][row];  // of several components: the pair's own constants
   alignas(64) double strength[size];
   alignas(64) LocalIndex first[size];  // slots of records; filled up to a multiple of 8 with the last pair
   alignas(64) LocalIndex second[size];
@@ -180,6 +185,20 @@ PACKMPI_INLINE void keep(const Block<F>& b, const StoredVectors& to, std::int64_
   for (int c = 0; c < Memory<F>::stored; ++c) {
     double* target = to.values + c * to.entries + at;
     for (int p = 0; p < b.count; ++p) target[p] = b.stored[c][p];
+  }
+}
+
+/// With several components: the constants of each pair (or wall contact) from the table of its kind, by the code that
+/// the ends add up to.
+template <Features F>
+PACKMPI_INLINE void look_up(const LawConstants* table, Block<F>& b) {
+  if constexpr (F.mixture) {
+    for (int p = 0; p < b.filled; ++p) {
+      const LawConstants& c = table[static_cast<int>(b.in[F.layout().component][p])];
+      b.law[0][p] = c.stiffness, b.law[1][p] = c.damping, b.law[2][p] = c.friction;
+      b.law[3][p] = c.shear_stiffness, b.law[4][p] = c.shear_damping;
+      b.law[5][p] = c.rolling_friction, b.law[6][p] = c.twisting_friction;
+    }
   }
 }
 

@@ -94,6 +94,12 @@ PACKMPI_INLINE Reduced reduced_of_pair(double mass_factor, double curvature, dou
   return {a * b, radius * curvature * b};
 }
 
+/// From k_i + k_j and w_i + w_j, w = 1/m: with one division, too.
+PACKMPI_INLINE Reduced reduced_of_mixed(double curvature, double inverse_mass) {
+  const double b = 1.0 / (curvature * inverse_mass);
+  return {inverse_mass * b, curvature * b};
+}
+
 PACKMPI_INLINE Reduced reduced_of_wall(double mass_factor, double curvature, double radius) {
   return {radius, 1.0 / (mass_factor * curvature * curvature * curvature)};
 }

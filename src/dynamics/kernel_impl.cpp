@@ -46,6 +46,7 @@ struct Stepper {
       take<F>(data, p, done, block);
       fetch<F>(data.stored_pairs, p, block);
       pack<F>(data.records, block);
+      look_up<F>(data.law.pair_table, block);
       resolve_pairs<F>(block, pair, periods, scale);
       tally.pair_force = largest(block.strength, block.filled, tally.pair_force);
       scatter<F>(data.ring, block);
@@ -81,11 +82,26 @@ static StepReport step(const StepData& data) {
 
 /// The kernels there are, by number: which moving parts, each of which has more than the one before (nothing, friction,
 /// rotation; or with memory friction, rotation, rolling), then graded, periodic, and without memory drag: with it drag
-/// is always in, its coefficient zero where the scene has none.
+/// is always in, its coefficient zero where the scene has none. Then those of several components, graded and with drag:
+/// without memory (friction is always in) at rest or with spin, and the three with memory, each periodic or not.
 constexpr int plain_kernels = 24;
-constexpr int kernel_count = plain_kernels + 12;
+constexpr int one_component = plain_kernels + 12;
+constexpr int kernel_count = one_component + 10;
+
+constexpr Features mixed_features_of(int own) {
+  Features f;
+  f.dimension = PACKMPI_DIMENSION;
+  const int moving = own / 2;
+  f.memory = moving >= 2;
+  f.rolling = moving == 4;
+  f.rotation = moving == 1 || moving >= 3;
+  f.friction = f.drag = f.graded = f.mixture = true;
+  f.periodic = own % 2 != 0;
+  return f;
+}
 
 constexpr Features features_of(int number) {
+  if (number >= one_component) return mixed_features_of(number - one_component);
   Features f;
   f.dimension = PACKMPI_DIMENSION;
   f.memory = number >= plain_kernels;
@@ -110,6 +126,10 @@ struct Table<std::integer_sequence<int, Number...>> {
 using Kernels = Table<std::make_integer_sequence<int, kernel_count>>;
 
 Kernel kernel(const Features& f) {
+  if (f.mixture) {
+    const int moving = (f.memory ? 2 : 0) + (f.rotation ? 1 : 0) + (f.rolling ? 1 : 0);
+    return Kernels::kernels[one_component + 2 * moving + (f.periodic ? 1 : 0)];
+  }
   if (f.memory) {
     const int moving = f.rolling ? 2 : (f.rotation ? 1 : 0);
     return Kernels::kernels[plain_kernels + moving * 4 + (f.periodic ? 2 : 0) + (f.graded ? 1 : 0)];

@@ -53,6 +53,7 @@ PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double s
       const std::int64_t entry = from + (p < count ? p : count - 1);
       put_wall<F>(data, b, p, data.wall_particle[entry], data.wall[entry]);
     }
+    look_up<F>(data.law.wall_table, b);
     fetch<F>(data.stored_walls, from, b);
     resolve_walls<F>(b, c, scale);
     keep<F>(b, data.stored_walls, from);
@@ -110,13 +111,14 @@ PACKMPI_INLINE Motion motion_of(const StepData& data) {
 template <Features F>
 PACKMPI_INLINE void advance(double* record, std::int64_t* sum, const Motion& m, Tally& tally) {
   constexpr particles::Layout layout = F.layout();
-  constexpr bool half = layout.stride == 6;  // 2D without spin: the next record follows after two lanes of velocity
+  constexpr bool half = F.dimension == 2 && !F.rotation;  // two lanes of velocity, and behind them the next record
   Lanes x = load(record);
   Lanes v = half ? load_half(record + 4) : load(record + 4);
   double mass = 1.0;
   if constexpr (F.graded) {
     const double k = F.dimension == 3 ? v[3] : x[3];
     mass = m.mass_factor * k * k * k;
+    if constexpr (F.mixture) mass = record[layout.component + 1];
   }
   Lanes force = __builtin_convertvector(reinterpret_cast<IntLanes>(load_bits(sum)), Lanes) * m.quantum;
   store_bits(sum, BitLanes{});

@@ -55,6 +55,18 @@ PACKMPI_INLINE void put(Block<F>& b, int p, const Force& f, const Curvatures& k,
   b.strength[p] = f.strength;
 }
 
+/// Of entry p: the scene's, or with several components those of its pair.
+template <Features F>
+PACKMPI_INLINE Constants constants_at(const Block<F>& b, int p, const Constants& all) {
+  Constants c = all;
+  if constexpr (F.mixture) {
+    c.stiffness = b.law[0][p], c.damping = b.law[1][p], c.friction = b.law[2][p];
+    c.shear_stiffness = b.law[3][p], c.shear_damping = b.law[4][p];
+    c.rolling_friction = b.law[5][p], c.twisting_friction = b.law[6][p];
+  }
+  return c;
+}
+
 /// Three neighbouring rows, or in the plane two, or of a spin one.
 template <Features F>
 PACKMPI_INLINE Vector vector_at(const double (*rows)[Block<F>::row], int field, int p) {
@@ -148,7 +160,7 @@ PACKMPI_INLINE void hold_all(Block<F>& b, const Constants& c, double scale) {
     const Pressed at = {vector_at<F>(b.in, 0, p), b.pressed[0][p], vector_at<F>(b.in, u, p), now, b.distance[p]};
     Vector spin = {};
     if constexpr (F.rolling) spin = spin_at<F>(b.again, p);
-    put_force<F>(b, p, k, hold_3d<F>(k, at, spin, springs_at<F>(b, p)), scale);
+    put_force<F>(b, p, k, hold_3d<F>(constants_at<F>(b, p, k), at, spin, springs_at<F>(b, p)), scale);
   }
 }
 
@@ -184,8 +196,9 @@ PACKMPI_INLINE void resolve_pairs(Block<F>& b, const Constants& c, const Periods
     if constexpr (F.dimension == 3) square = square + z * z;
     const double radius = b.in[layout.radius][p];
     Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], radius);
-    contact<F>(b, p, k, reduced, touch(x, y, z, square, radius), scale);
+    if constexpr (F.graded && !F.mixture) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], radius);
+    if constexpr (F.mixture) reduced = reduced_of_mixed(b.in[layout.curvature][p], b.in[layout.component + 1][p]);
+    contact<F>(b, p, constants_at<F>(b, p, k), reduced, touch(x, y, z, square, radius), scale);
   }
   if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }
@@ -201,8 +214,9 @@ PACKMPI_INLINE void resolve_walls(Block<F>& b, const Constants& c, double scale)
     const Vector n = {b.in[0][p], b.in[1][p], F.dimension == 3 ? b.in[2][p] : 0.0};
     const double radius = b.in[layout.radius][p];
     Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], radius);
-    contact<F>(b, p, k, reduced, {n, 0.0, radius - b.distance[p]}, scale);
+    if constexpr (F.graded && !F.mixture) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], radius);
+    if constexpr (F.mixture) reduced = {radius, 1.0 / b.in[layout.component + 1][p]};
+    contact<F>(b, p, constants_at<F>(b, p, k), reduced, {n, 0.0, radius - b.distance[p]}, scale);
   }
   if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }

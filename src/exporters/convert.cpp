@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 
@@ -93,6 +94,16 @@ void check_cut(const ConvertRequest& request) {
   }
 }
 
+/// The materials of several components are carried by some formats only.
+void check_components(const ConvertRequest& request, const scene::Scene& scene) {
+  constexpr std::array<std::string_view, 5> able{"lammps", "liggghts", "yade", "csv", "vtk"};
+  if (!scene.features.mixture || std::ranges::find(able, request.format) != able.end()) return;
+  refuse_request(
+      fmt::format("--to {}: it is written with one material, and the pack has {} components; use lammps, "
+                  "liggghts, yade, csv or vtk",
+                  request.format, scene.in.components.size()));
+}
+
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
 scene::Scene scene_of(const pack::PackFile& file) {
   try {
@@ -154,6 +165,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   });
   pack::check_pack(comm, request.pack);
   check_copies(request, scene.container);
+  check_components(request, scene);
   check_cut(request);
   const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene);  // pure, as check_copies() is
   comm::agree_on(comm, [&] {

@@ -8,6 +8,7 @@
 #include "confine/stress.hpp"
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
+#include "exporters/mixture.hpp"
 #include "exporters/quote.hpp"
 
 namespace packmpi::exporters::lammps {
@@ -161,8 +162,10 @@ std::string in_file(const Specimen& s) {
       "units           si\ndimension       {}\natom_style      sphere\nboundary       {}\ncomm_modify     vel yes\n"
       "read_data       ${{data}}\n\n"
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n"
-      "pair_style      granular\npair_coeff      * * {}\n",
-      lammps_word(s.file), s.flat() ? 2 : 3, boundary_words(s), s.scene.skin, contact(s, 0.5, in.contact.friction));
+      "pair_style      granular\n{}",
+      lammps_word(s.file), s.flat() ? 2 : 3, boundary_words(s), s.scene.skin,
+      s.scene.features.mixture ? lammps_pairs(s)
+                               : fmt::format("pair_coeff      * * {}\n", contact(s, 0.5, in.contact.friction)));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
   text += drag(s);
@@ -185,19 +188,18 @@ std::string in_file(const Specimen& s) {
       "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
       "anew before another one\n"
       "{6}{2}{3}{7}run             ${{steps}}\n{1}",
-      s.scene.container.lid ? s.scene.confining_step : s.scene.time_step, report, walls(s),
-      s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
-      hold(s));
+      s.scene.container.lid ? s.scene.confining_step : s.scene.time_step, report,
+      s.scene.features.mixture ? lammps_walls(s) : walls(s), s.flat() ? "fix             plane all enforce2d\n" : "",
+      stress_measures(s), stress_columns(s), servos(s), hold(s));
   return text;
 }
 
 }  // namespace
 
 Document make(const Specimen& s) {
-  const double density = s.scene.in.particles.density;
   Document document;
-  document.sections.push_back({data_head(s, "LAMMPS", 1, "Atoms  # sphere"),
-                               [density](Text& out, const Outgoing& p) { atom_row(out, p, density); }});
+  document.sections.push_back({data_head(s, "LAMMPS", kinds(s), "Atoms  # sphere"),
+                               [&s](Text& out, const Outgoing& p) { atom_row(out, p, density_of(s, p)); }});
   document.sections.push_back(velocities());
   document.companion = in_file(s);
   return document;

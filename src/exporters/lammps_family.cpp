@@ -28,8 +28,9 @@ std::string data_head(const Specimen& s, const char* code, int kinds, const char
 }
 
 void atom_row(Text& out, const Outgoing& p, double density) {
-  fmt::format_to(fmt::appender(out), FMT_COMPILE("{} 1 {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n"), p.row.id,
-                 2.0 * p.row.radius, density, p.row.position[0], p.row.position[1], p.row.position[2]);
+  fmt::format_to(fmt::appender(out), FMT_COMPILE("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n"), p.row.id,
+                 p.row.component + 1, 2.0 * p.row.radius, density, p.row.position[0], p.row.position[1],
+                 p.row.position[2]);
 }
 
 Section velocities() { return {"\nVelocities\n\n", velocity_row}; }

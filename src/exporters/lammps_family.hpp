@@ -10,7 +10,7 @@ namespace packmpi::exporters {
 /// `kinds`: atom types; `section`: "Atoms" with or without its comment.
 [[nodiscard]] std::string data_head(const Specimen& specimen, const char* code, int kinds, const char* section);
 
-/// "id type diameter density x y z".
+/// "id type diameter density x y z", the type being 1 or that of the particle's component.
 void atom_row(Text& out, const Outgoing& particle, double density);
 
 /// The second section of a data file: "id vx vy vz wx wy wz".

@@ -3,6 +3,7 @@
 
 #include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
+#include "exporters/mixture.hpp"
 #include "exporters/quote.hpp"
 
 namespace packmpi::exporters::liggghts {
@@ -36,7 +37,8 @@ std::string material(const Specimen& s) {
 
 /// LIGGGHTS' spring of rolling is k_t r*, as the scene's.
 const char* rolling(const Specimen& s) {
-  return s.scene.in.contact.rolling_friction > 0.0 ? " rolling_friction epsd2" : "";
+  const bool mixture = s.scene.features.mixture && s.scene.features.rolling;
+  return mixture || s.scene.in.contact.rolling_friction > 0.0 ? " rolling_friction epsd2" : "";
 }
 
 /// Settings of the model: twisting shares the limit of rolling; no attraction while particles part, if the scene has
@@ -49,8 +51,9 @@ std::string limit(const Specimen& s) {
 
 std::string walls(const Specimen& s) {
   constexpr const char* line =
-      "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}}{4} primitive type 2 {0}plane "
+      "fix             wall_{0}{1} all wall/gran model hertz tangential ${{tangential}}{4} primitive type {5} {0}plane "
       "{2}{3}\n";
+  const int type = kinds(s) + 1;
   std::string text;
   if (s.round()) {
     text = fmt::format(
@@ -60,14 +63,14 @@ std::string walls(const Specimen& s) {
   }
   for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;
-    text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s));
-    text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s));
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s), type);
+    text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s), type);
   }
   const char up = "xyz"[s.vertical()];
   if (s.scene.container.lid) {
-    text += fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s));
+    text += fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s), type);
   }
-  return text + fmt::format(fmt::runtime(line), up, "floor", 0.0, limit(s), rolling(s));
+  return text + fmt::format(fmt::runtime(line), up, "floor", 0.0, limit(s), rolling(s), type);
 }
 
 std::string in_file(const Specimen& s) {
@@ -84,7 +87,7 @@ std::string in_file(const Specimen& s) {
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n",
       liggghts_word(s.file), in.contact.damping_ratio > 0.0 && !remembers(s) ? "no_history" : "history",
       s.flat() ? 2 : 3, boundary_words(s), s.scene.skin);
-  text += material(s);
+  text += s.scene.features.mixture ? liggghts_material(s) : material(s);
   text += fmt::format("pair_style      gran model hertz tangential ${{tangential}}{}{}\npair_coeff      * *\n",
                       rolling(s), limit(s));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
@@ -115,12 +118,13 @@ std::string in_file(const Specimen& s) {
 }  // namespace
 
 Document make(const Specimen& s) {
-  const double density = s.scene.in.particles.density;
   const bool flat = s.flat();  // its particles are then discs of unit thickness; ours are spheres in a plane
   Document document;
-  document.sections.push_back({data_head(s, "LIGGGHTS", 2, "Atoms"), [density, flat](Text& out, const Outgoing& p) {
-                                 atom_row(out, p, flat ? 4.0 / 3.0 * p.row.radius * density : density);
-                               }});
+  document.sections.push_back(
+      {data_head(s, "LIGGGHTS", kinds(s) + 1, "Atoms"), [&s, flat](Text& out, const Outgoing& p) {
+         const double density = density_of(s, p);
+         atom_row(out, p, flat ? 4.0 / 3.0 * p.row.radius * density : density);
+       }});
   document.sections.push_back(velocities());
   document.companion = in_file(s);
   return document;

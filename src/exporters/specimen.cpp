@@ -13,6 +13,7 @@
 #include "exporters/quote.hpp"
 #include "geometry/volume.hpp"
 #include "packmpi/version.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::exporters {
 namespace {
@@ -24,12 +25,12 @@ double sphere(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * ra
 
 pack::ParticleRow row_of(const pack::PackRows& rows, std::size_t k) {
   return {rows.id[k],     rows.position[k], rows.velocity[k], rows.spin.empty() ? Vec3{} : rows.spin[k],
-          rows.radius[k], rows.layer[k],    rows.contacts[k]};
+          rows.radius[k], rows.layer[k],    rows.contacts[k], rows.component.empty() ? 0 : rows.component[k]};
 }
 
 /// What one rank finds.
 struct Found {
-  std::int64_t count = 0, quanta = 0;
+  std::int64_t count = 0, quanta = 0, mass_quanta = 0;  // the last: of several components, in the densest's
   double top = 0.0, widest = 0.0;
   Vec3 lowest{}, highest{};
 };
@@ -45,6 +46,11 @@ Found look(const comm::Comm& comm, const Selection& selection, const scene::Scen
   selection.visit(share.begin(comm.rank()), share.begin(comm.rank() + 1), [&](const pack::ParticleRow& row) {
     ++found.count;
     found.quanta += std::llround(sphere(row.radius) * scale);
+    if (scene.features.mixture) {
+      const auto component = static_cast<std::size_t>(row.component);
+      const double density = scene.in.components[component].particles.density / scene::densest(scene.in);
+      found.mass_quanta += std::llround(sphere(row.radius) * scale * density);
+    }
     found.top = std::max(found.top, row.position[up] + row.radius);
     found.widest = std::max(found.widest, row.radius);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -167,6 +173,11 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
   s.copies = request.copies;
   s.count = comm.sum(found.count);
   s.volume = static_cast<double>(comm.sum(found.quanta)) * (sphere(scene.sizes.largest()) / volume_quanta);
+  s.mass = s.volume * scene.in.particles.density;
+  if (scene.features.mixture) {
+    s.mass = static_cast<double>(comm.sum(found.mass_quanta)) * (sphere(scene.sizes.largest()) / volume_quanta) *
+             scene::densest(scene.in);
+  }
   survey_cut(comm, selection, scene, s);
   s.size = s.scene.container.size;
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) s.size[axis] *= request.copies[axis];
@@ -207,7 +218,7 @@ std::vector<std::string> header_lines(const Specimen& s) {
       fmt::format("packmpi {}: units si (m, kg, s)", version()),
       fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,
                   s.flat() ? "spheres in a plane" : "spheres", comment(s.pack), comment(s.version), s.scene.in.seed,
-                  s.volume, s.volume * s.scene.in.particles.density),
+                  s.volume, s.mass),
       box};
   if (s.trim == Trim::drop) lines.emplace_back("trimmed: particles that reach above H_d are left out");
   if (s.trim == Trim::cut) lines.emplace_back("trimmed: particles with their centre above H_d are left out");

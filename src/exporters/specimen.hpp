@@ -68,6 +68,7 @@ struct Specimen {
   std::array<int, 2> copies{1, 1};
   std::int64_t count = 0;    ///< particles written
   double volume = 0.0;       ///< [m3] of them, as spheres; 9 digits
+  double mass = 0.0;         ///< [kg] of them; 9 digits
   Vec3 size{};               ///< [m] lateral extents of all copies, then H_d; z of a 2D pack: 0
   double top = 0.0;          ///< [m] of the highest particle written
   double widest = 0.0;       ///< [m] largest radius written; 1 if nothing is

@@ -27,7 +27,7 @@ Array scalar(const char* name, const char* type, T pack::ParticleRow::*member) {
 }
 
 /// Where the arrays stand in the XML, in the order of the bytes: points, particle data, vertices.
-std::vector<Array> arrays(bool rotation) {
+std::vector<Array> arrays(bool rotation, bool mixture) {
   std::vector<Array> all;
   all.push_back(vector("Points", &pack::ParticleRow::position));
   all.push_back(scalar("radius", "Float64", &pack::ParticleRow::radius));
@@ -36,6 +36,7 @@ std::vector<Array> arrays(bool rotation) {
   if (rotation) all.push_back(vector("spin", &pack::ParticleRow::spin));
   all.push_back(scalar("layer", "Int32", &pack::ParticleRow::layer));
   all.push_back(scalar("contacts", "Int32", &pack::ParticleRow::contacts));
+  if (mixture) all.push_back(scalar("component", "Int32", &pack::ParticleRow::component));
   all.push_back({"connectivity", "Int64", 1, 8, [](Text& out, const Outgoing& p) { append_raw(out, p.index); }});
   all.push_back({"offsets", "Int64", 1, 8, [](Text& out, const Outgoing& p) { append_raw(out, p.index + 1); }});
   return all;
@@ -73,7 +74,7 @@ std::string xml(const Specimen& s, const std::vector<Array>& all) {
 }  // namespace
 
 Document make(const Specimen& s) {
-  const std::vector<Array> all = arrays(s.rotation);
+  const std::vector<Array> all = arrays(s.rotation, s.scene.features.mixture);
   Document document;
   std::string head = xml(s, all);
   for (const Array& array : all) {

@@ -7,6 +7,7 @@
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
+#include "exporters/mixture.hpp"
 #include "exporters/quote.hpp"
 
 namespace packmpi::exporters::yade {
@@ -81,22 +82,25 @@ std::string script(const Specimen& s) {
       "data = os.environ.get('PACK_DATA', {1})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
       remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file),
       s.round() ? "geom, " : "");
-  text += materials(s);
-  text += fmt::format(
-      "spheres = pack.SpherePack()\nspheres.load(data)\n"
-      "spheres.isPeriodic = {}\n"
-      "ids = list(spheres.toSimulation(material='particles'))\n"
-      "for i in ids:\n    O.bodies[i].state.blockedDOFs = '{}'\n",
-      s.scene.features.periodic ? "True" : "False", blocked(s));
+  const bool mixture = s.scene.features.mixture;
+  text += mixture ? yade_materials(s) : materials(s);
+  text += mixture ? yade_reader(s)
+                  : fmt::format(
+                        "spheres = pack.SpherePack()\nspheres.load(data)\n"
+                        "spheres.isPeriodic = {}\n"
+                        "ids = list(spheres.toSimulation(material='particles'))\n",
+                        s.scene.features.periodic ? "True" : "False");
+  text += fmt::format("for i in ids:\n    O.bodies[i].state.blockedDOFs = '{}'\n", blocked(s));
   text += walls(s) + "O.bodies.append(walls)\n\n";
   text += fmt::format(
       "O.engines = [\n    ForceResetter(),\n"
       "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(){3}], allowBiggerThanPeriod=True),\n"
       "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(){4}],\n"
-      "                    [Ip2_FrictMat_FrictMat_MindlinPhys(betan={0}, betas={0})],\n"
+      "                    [Ip2_FrictMat_FrictMat_MindlinPhys({0})],\n"
       "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
       "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
-      in.contact.damping_ratio, s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.scene.time_step,
+      mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", in.contact.damping_ratio),
+      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.scene.time_step,
       s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom()" : "");
   return text +
          "def report():\n"
@@ -114,10 +118,11 @@ std::string script(const Specimen& s) {
 
 Document make(const Specimen& s) {
   Document document;
-  document.sections.push_back({cell(s), [](Text& out, const Outgoing& p) {
+  const bool mixture = s.scene.features.mixture;  // the fifth column is for clumps, or read by the script
+  document.sections.push_back({cell(s), [mixture](Text& out, const Outgoing& p) {
                                  const Vec3& x = p.row.position;
-                                 fmt::format_to(fmt::appender(out), FMT_COMPILE("{:.17g} {:.17g} {:.17g} {:.17g} -1\n"),
-                                                x[0], x[1], x[2], p.row.radius);
+                                 fmt::format_to(fmt::appender(out), FMT_COMPILE("{:.17g} {:.17g} {:.17g} {:.17g} {}\n"),
+                                                x[0], x[1], x[2], p.row.radius, mixture ? p.row.component : -1);
                                }});
   document.companion = script(s);
   return document;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "comm/petsc.hpp"
 #include "run/search.hpp"
 
@@ -27,6 +28,10 @@ report::State state_of(const input::Input& in, const std::vector<control::Trial>
 input::Input with_target(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides) {
   input::Input in = input::read(comm, path, overrides);
   if (in.target) return in;
+  if (!in.components.empty()) {
+    throw Error(ExitCode::bad_input,
+                path + ": limits are found by the friction of one material, and there are several components");
+  }
   input::Overrides more = overrides;
   more.set.emplace_back("target.relative_density=0.5");
   return input::read(comm, path, more);

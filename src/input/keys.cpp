@@ -120,6 +120,7 @@ constexpr Condition settled{"stop = \"settled\"",
                             [](const Input& in) { return in.dynamics.stop == StopRule::settled; }};
 constexpr Condition near_field{"[near_field] is present", [](const Input& in) { return in.near_field.has_value(); }};
 
+constexpr Condition mixed{"[[component]] is present", [](const Input& in) { return !in.components.empty(); }};
 constexpr Condition targeted{"[target] is present", [](const Input& in) { return in.target.has_value(); }};
 constexpr Condition confined{"[confinement] is present", [](const Input& in) { return in.confinement.has_value(); }};
 
@@ -212,6 +213,13 @@ std::vector<Key> radius_keys() {
          "Between the points, the percentage is linear in the logarithm of the diameter, or in the diameter.")),
     when(grading, reals("particles.radius.keep_percent", at_radius(&Radius::keep_percent), Count::two, plain, between(0, 100), "[0.0, 100.0]",
          "Leave out what the curve has outside of these percentages: [5, 100] drops the finest 5 %.")),
+  };
+}
+
+std::vector<Key> mixture_keys() {
+  return {
+    when(mixed, word_of("mixture.share_by", at(&Input::mixture, &Mixture::share_by), {"mass", "volume", "number"}, mandatory,
+         "What the shares of components are of: \"mass\", solid \"volume\", or \"number\" of particles. See \"Components and strata\" below.")),
   };
 }
 
@@ -411,9 +419,9 @@ std::vector<Key> program_keys() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> table = [] {
     std::vector<Key> all;
-    for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), layer_keys(),
-                             force_keys(), near_field_keys(), dynamics_keys(), start_keys(), rest_keys(), target_keys(),
-                             confinement_keys(), program_keys()}) {
+    for (const auto& part : {general_keys(), container_keys(), particle_keys(), radius_keys(), mixture_keys(),
+                             layer_keys(), force_keys(), near_field_keys(), dynamics_keys(), start_keys(), rest_keys(),
+                             target_keys(), confinement_keys(), program_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

@@ -1,19 +1,3 @@
-/// Between what radii a size distribution lies.
+/// The structs of a scene, by the name that most files know.
 #pragma once
-#include "input/input.hpp"
-
-namespace packmpi::input {
-
-/// Radii of more than this ratio are searched for by size (doc/performance.md, "Wide gradings"), and heeded in the
-/// step.
-constexpr double alike_ratio = 2.5;
-
-/// The smallest and the largest radius [m].
-struct RadiusRange {
-  double smallest, largest;
-};
-
-/// Of a distribution as truncated. Only of one that check_radii() has passed.
-[[nodiscard]] RadiusRange radius_range(const Radius& radius);
-
-}  // namespace packmpi::input
+#include "asked/radius_range.hpp"

@@ -14,6 +14,7 @@
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"
+#include "input/mixture.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
 #include "tables/known_names.hpp"
@@ -45,13 +46,19 @@ std::vector<std::string> names_in(std::string_view table) {
   return names;
 }
 
+// Arrays of tables, which are read by input/mixture.cpp.
+std::vector<std::string> with_arrays(std::vector<std::string> names, const std::string& table) {
+  if (table.empty()) names.insert(names.end(), {"component", "pair", "stratum"});
+  return names;
+}
+
 std::string in_words(const std::vector<std::string>& names) {
   return joined(std::vector<std::string_view>(names.begin(), names.end()), "and");
 }
 
 /// What the user may have meant by the unknown `name` in `table`.
 std::string suggestion(const std::string& table, const std::string& name) {
-  const std::vector<std::string> siblings = names_in(table);
+  const std::vector<std::string> siblings = with_arrays(names_in(table), table);
   if (auto known = tables::known_elsewhere(table, name)) return *known;
   if (const auto near = text::closest(name, siblings)) return fmt::format("did you mean \"{}\"?", *near);
   for (const Key& key : keys()) {
@@ -287,12 +294,14 @@ void take_restitution(const Document& document, Contact& contact) {
   contact.damping_ratio = damping;
 }
 
-void read_document(const Document& document, const std::optional<CurveFile>& curve, Input& in) {
+void read_document(const Document& document, const std::optional<CurveFile>& curve, const MixtureTables& mixture,
+                   Input& in) {
   refuse_unknown(document.root(), "");
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   if (document.find("start") != nullptr) in.start.emplace();
   if (document.find("target") != nullptr) in.target.emplace();
   if (document.find("confinement") != nullptr) in.confinement.emplace();
+  if (mixture.components.size() > 1) in.components.resize(mixture.components.size());  // the condition of [mixture]
   for (const Key& key : keys()) {
     if (key.path == "container.size") check_shape(in, document);
     read_key(key, document, in);
@@ -303,7 +312,8 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
   take_list(document, curve, in);
   take_restitution(document, in.contact);
   try {
-    check_radii(in, document);
+    if (in.components.empty()) check_radii(in, document);
+    take_mixture(mixture, document, in);
     apply_preset(document, in);
     check(in, document);
   } catch (const Error& error) {
@@ -318,13 +328,13 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
 std::string effective_of(Input in) {
   std::string text, open;
   for (const Key& key : keys()) {
-    if (!key.applies(in)) continue;
+    if (!key.applies(in) || (!in.components.empty() && is_of_component(key.path))) continue;
     const auto [table, name] = split_path(key.path);
     if (table != open) text += fmt::format("\n[{}]\n", table);
     open = table;
     text += fmt::format("{} = {}\n", name, written(key, in));
   }
-  return text;
+  return text + effective_mixture(in);
 }
 
 std::optional<CurveFile> named_curve(const std::string& text, const std::string& path, const Overrides& overrides) {
@@ -344,19 +354,28 @@ std::optional<CurveFile> named_curve(const std::string& text, const std::string&
 Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
             const std::optional<CurveFile>& curve) {
   Document document = with_changes(text, path, overrides);
+  const MixtureTables mixture = split_mixture(document);
   Input in;
   in.file = path;
   in.name = std::filesystem::path(path).stem().string();
   in.particles.radius.diameters = rename_diameters(document);
   take_size_of_cylinder(document);
   try {
-    read_document(document, curve, in);
+    read_document(document, curve, mixture, in);
   } catch (const Error& error) {
     if (!in.particles.radius.diameters) throw;
     throw Error(error.code(), in_diameters(error.what()));
   }
   in.particles.radius.diameters = false;
   in.effective = effective_of(in);
+  return in;
+}
+
+Input parse_part(Document document, const std::string& path) {
+  Input in;
+  in.file = path;
+  in.particles.radius.diameters = rename_diameters(document);
+  read_document(document, std::nullopt, {}, in);
   return in;
 }
 

@@ -23,6 +23,7 @@ Analysis analyse(const Specimen& pack) {
   a.rest = rest(pack.comm, pack.store, pack.scene, pack.neighborhood);
   a.forces = forces(pack);
   a.floor_force = floor_force(pack.comm, pack.store, pack.scene, pack.neighborhood.walls());
+  a.composition = composition(pack.comm, pack.store, pack.scene, pack.bulk, {});
   a.weight = motion(pack.comm, pack.store, pack.scene).mass * pack.scene.in.jamming.gravity;
   a.order = order(pack);
   a.local = local_density(pack);

@@ -7,6 +7,7 @@
 
 #include "comm/comm.hpp"
 #include "neighbor/neighborhood.hpp"
+#include "observe/composition.hpp"
 #include "observe/measure.hpp"
 #include "observe/rest.hpp"
 #include "observe/size_match.hpp"
@@ -109,6 +110,7 @@ struct Analysis {
   std::int64_t particles = 0;
   double mean_diameter = 0.0;  ///< [m] of the scene
   SizeMatches sizes;
+  Composition composition;       ///< without strata's boundaries; empty with one component
   std::vector<Profile> density;  ///< along x, y(, z)
   RadialProfile radial;          ///< of a round vessel
   Segregation segregation;

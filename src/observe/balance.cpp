@@ -6,9 +6,9 @@
 #include "dynamics/contact_law.hpp"
 #include "dynamics/kernel.hpp"
 #include "dynamics/near_field.hpp"
-#include "geometry/volume.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::observe {
 namespace {
@@ -52,7 +52,7 @@ void add_body_forces(const particles::Store& store, const scene::Scene& scene, S
     const Vec3 v = store.velocity(i);
     Vec3 force{};
     for (std::size_t a = 0; a < 3; ++a) force[a] = -drag.coefficient * (v[a] - drag.fluid_velocity[a]);
-    force[vertical] -= scene.in.particles.density * geometry::volume(3, store.radius(i)) * scene.in.jamming.gravity;
+    force[vertical] -= scene::mass_of(scene, store, i) * scene.in.jamming.gravity;
     sums.add(i, force);
   }
 }

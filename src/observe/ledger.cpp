@@ -8,6 +8,7 @@
 #include "observe/kinetic.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::observe {
 namespace {
@@ -29,9 +30,7 @@ double add_particles(const particles::Store& store, const scene::Scene& scene, T
   double fastest = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const double* record = store.record(static_cast<LocalIndex>(i));
-    const double mass = scene.features.graded
-                            ? scene.in.particles.density * geometry::volume(3, record[layout.radius])  // discs too
-                            : equal_mass;
+    const double mass = scene.features.graded ? scene::mass_of(scene, store, static_cast<LocalIndex>(i)) : equal_mass;
     for (std::size_t a = 0; a < dimension; ++a) {
       terms[momentum_x + a][i] = mass * record[static_cast<std::size_t>(layout.velocity) + a];
     }
@@ -58,7 +57,7 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
     if (!is_counted_here(store, i, j, frozen_below)) return;
     const double ri = store.radius(i);
     const double rj = store.radius(j);
-    terms.push_back(elastic_energy(law.pair, ri * rj / (ri + rj), overlap));
+    terms.push_back(elastic_energy(law.of_pair(scene::pair_code(store, i, j)), ri * rj / (ri + rj), overlap));
     if (!scene.features.memory) return;
     terms.push_back(dynamics::pair_contact(scene, law, store, i, j, stored, entry).spring_energy);
   };
@@ -69,7 +68,7 @@ void add_walls(const particles::Store& store, const scene::Scene& scene, const d
                const neighbor::Neighborhood& neighborhood, std::vector<double>& terms) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double overlap) {
-    terms.push_back(elastic_energy(law.wall, store.radius(i), overlap));
+    terms.push_back(elastic_energy(law.of_wall(scene::wall_code(store, i)), store.radius(i), overlap));
     if (!scene.features.memory) return;
     terms.push_back(dynamics::wall_contact(scene, law, store, i, wall, stored, entry).spring_energy);
   };
@@ -104,7 +103,7 @@ double energy_of(const comm::Comm& comm, const particles::Store& store, const sc
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const GlobalId id = store.ids()[static_cast<std::size_t>(i)];
     if (id < from || id >= to) continue;
-    const double mass = scene.in.particles.density * geometry::volume(3, store.radius(i));
+    const double mass = scene::mass_of(scene, store, i);
     terms.push_back(mass *
                     (kinetic_over_mass(store, i).energy() + scene.in.jamming.gravity * store.position(i)[vertical]));
   }

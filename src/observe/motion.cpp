@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/volume.hpp"
 #include "observe/kinetic.hpp"
 #include "observe/measure.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::observe {
 Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
@@ -15,7 +15,7 @@ Motion motion(const comm::Comm& comm, const particles::Store& store, const scene
   double fastest = 0.0;                                                  // squared
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Kinetic moving = kinetic_over_mass(store, i);
-    const double mass = scene.in.particles.density * geometry::volume(3, store.radius(i));  // discs are spheres too
+    const double mass = scene::mass_of(scene, store, i);
     const auto k = static_cast<std::size_t>(i);
     terms[0][k] = mass * moving.energy();
     terms[1][k] = store.position(i)[vertical];

@@ -53,8 +53,12 @@ RunState state_in(const disk::SealedFile& file) {
       !f.on || (f.layer_knobs.size() == p.first_ids.size() && f.layer_surfaces.size() == p.layers.size() &&
                 f.layer_fractions.size() == p.layers.size() && f.knobs.size() == f.filled.size() &&
                 f.knobs.size() == f.relaxed.size());
-  const bool valid = filling_valid && p.count >= 0 && p.steps >= 0 && p.now.done >= 0 && state.dimension >= 2 &&
-                     state.dimension <= 3 && std::ranges::is_sorted(p.first_ids) &&
+  const control::Mixing& m = p.mixing;
+  const bool mixing_valid = !m.on || (m.strata.size() == p.first_ids.size() && !m.drawn.empty() &&
+                                      m.counts.size() == m.drawn.size() * m.strata.size() &&
+                                      m.units.size() == m.drawn.size() && m.wanted.size() == m.drawn.size());
+  const bool valid = filling_valid && mixing_valid && p.count >= 0 && p.steps >= 0 && p.now.done >= 0 &&
+                     state.dimension >= 2 && state.dimension <= 3 && std::ranges::is_sorted(p.first_ids) &&
                      p.first_ids.size() == p.layers.size() + (p.now.phase == Phase::settling ? 1 : 0);
   if (!valid) refuse_checkpoint("its state contradicts itself");
   return state;

@@ -9,6 +9,7 @@
 #include "pack/checkpoint.hpp"
 #include "pack/histories.hpp"
 #include "pack/pack.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::pack {
 namespace {
@@ -66,14 +67,32 @@ void check_walls(const Histories& histories, const scene::Scene& scene) {
   }
 }
 
+/// Of contacts, the largest coefficients and the least 1/k_t that any two components have.
+double longest_of_any(const scene::Scene& scene, double scene::Friction::*which) {
+  const auto count = static_cast<int>(scene.in.components.size());
+  double longest = 0.0;
+  const auto heed = [&](const scene::PairMaterial& of) {
+    const double moduli = of.normal_modulus / of.shear_modulus;
+    longest = std::max(longest, of.friction.*which * moduli / 6.0 * (1.0 + 20.0 * of.damping_ratio));
+  };
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b <= a; ++b) heed(scene::pair_material(scene.in, a, b));
+    heed(scene::wall_material(scene.in, a));
+  }
+  return longest * 0.5 * scene.sizes.largest();
+}
+
 }  // namespace
 
 void check_springs(const Histories& histories, const scene::Scene& scene) {
   check_walls(histories, scene);
   const input::Contact& contact = scene.in.contact;
-  const std::array longest{longest_spring(scene, std::max(contact.friction, contact.wall_friction)),
-                           longest_spring(scene, contact.rolling_friction),
-                           longest_spring(scene, contact.twisting_friction)};
+  std::array longest{longest_spring(scene, std::max(contact.friction, contact.wall_friction)),
+                     longest_spring(scene, contact.rolling_friction), longest_spring(scene, contact.twisting_friction)};
+  if (scene.features.mixture) {
+    longest = {longest_of_any(scene, &scene::Friction::particles), longest_of_any(scene, &scene::Friction::rolling),
+               longest_of_any(scene, &scene::Friction::twisting)};
+  }
   for (const HistoryRow& row : histories.rows) {
     std::size_t at = 0, which = 0;
     for (const scene::Storing& what : scene::storings(histories.features)) {
@@ -88,6 +107,20 @@ void check_springs(const Histories& histories, const scene::Scene& scene) {
     }
   }
 }
+
+namespace {
+
+void check_components(const PackRows& rows, const scene::Scene& scene) {
+  if (rows.component.empty() == scene.features.mixture && !rows.id.empty())
+    refuse_scene("its particles have components and its scene none, or the other way round");
+  const auto count = static_cast<std::int32_t>(scene.in.components.size());
+  for (std::size_t k = 0; k < rows.component.size(); ++k) {
+    if (rows.component[k] >= 0 && rows.component[k] < count) continue;
+    refuse_scene(fmt::format("particle {} is of component {}, of {}", rows.id[k], rows.component[k], count));
+  }
+}
+
+}  // namespace
 
 void check_in_scene(const particles::Store& store, const Histories& histories, const scene::Scene& scene) {
   check_radii(store, scene.sizes);
@@ -105,6 +138,7 @@ void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
   if (rows.dimension != scene.container.dimension) {
     refuse_scene(fmt::format("it is a pack in {}D of a scene in {}D", rows.dimension, scene.container.dimension));
   }
+  check_components(rows, scene);
   const double largest = scene.sizes.largest();
   const auto up = static_cast<std::size_t>(scene.container.vertical());
   for (std::size_t k = 0; k < rows.id.size(); ++k) {

@@ -58,6 +58,7 @@ struct PackRows {
   std::vector<Vec3> position, velocity, spin;  ///< spin empty if absent
   std::vector<double> radius;
   std::vector<std::int32_t> layer, contacts;
+  std::vector<std::int32_t> component;  ///< number among the scene's, from 0; empty if there is one only
 };
 /// Rank-local (serial) read of a whole pack, for tests and small tools. Throws Error(io_failure), also if any of it is
 /// not what was written.

@@ -65,6 +65,8 @@ PackRows PackFile::rows(std::int64_t begin, std::int64_t count) const {
   if (rotation_) pack.spin = file_.rows<double, Vec3>("/particles/spin", range);
   pack.layer = file_.rows<std::int32_t, std::int32_t>("/particles/layer", range);
   pack.contacts = file_.rows<std::int32_t, std::int32_t>("/particles/contacts", range);
+  if (file_.has("/particles/component"))
+    pack.component = file_.rows<std::int32_t, std::int32_t>("/particles/component", range);
   check_particles(pack, begin);
   return pack;
 }

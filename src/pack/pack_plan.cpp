@@ -7,9 +7,14 @@
 
 #include "disk/scatter.hpp"
 #include "report/fields.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::pack {
 namespace {
+
+std::int32_t component_in(const particles::Store& store, LocalIndex i) {
+  return store.layout().component < 0 ? 0 : scene::component_of(store.substance(i).code);
+}
 
 std::vector<ParticleRow> rows_here(const PackParts& parts) {
   const particles::Store& store = *parts.store;
@@ -17,7 +22,7 @@ std::vector<ParticleRow> rows_here(const PackParts& parts) {
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     rows[k] = {store.ids()[k],  store.position(i), store.velocity(i), store.spin(i),
-               store.radius(i), parts.layer[k],    parts.contacts[k]};
+               store.radius(i), parts.layer[k],    parts.contacts[k], component_in(store, i)};
   }
   return rows;
 }
@@ -79,6 +84,9 @@ void add_particles(const PackBlock& block, std::vector<disk::h5::Column>& plan) 
       disk::h5::make_column<std::int32_t>("/particles/layer", "", slab, rows, [](const Row& r) { return r.layer; }));
   plan.push_back(disk::h5::make_column<std::int32_t>("/particles/contacts", "", slab, rows,
                                                      [](const Row& r) { return r.contacts; }));
+  if (!block.mixture) return;
+  plan.push_back(disk::h5::make_column<std::int32_t>("/particles/component", "", slab, rows,
+                                                     [](const Row& r) { return r.component; }));
 }
 
 /// What pairs and walls have alike, into `group`. The names are those of scene::storings.
@@ -140,6 +148,7 @@ void write_view(hid_t file, const PackBlock& block) {
   (void)disk::h5::create_group(file, "/VTKHDF/PointData");
   std::vector<std::string> names{"id", "radius", "velocity", "layer", "contacts"};
   if (block.rotation) names.emplace_back("spin");
+  if (block.mixture) names.emplace_back("component");
   for (const std::string& name : names) disk::h5::hard_link(file, "/particles/" + name, "/VTKHDF/PointData/" + name);
 }
 
@@ -185,6 +194,7 @@ void write_summary(hid_t file, const report::RunRecord& record) {
 PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
   PackBlock block;
   block.rotation = parts.store->layout().rotation;
+  block.mixture = parts.store->layout().component >= 0;
   const std::int64_t total = comm.sum(std::int64_t{parts.store->owned()});
   std::vector<ParticleRow> rows = rows_here(parts);
   comm::agree_on(comm, [&] { check_range(rows, total); });

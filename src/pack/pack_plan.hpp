@@ -15,11 +15,13 @@ struct ParticleRow {
   Vec3 position, velocity, spin;
   double radius;
   std::int32_t layer, contacts;
+  std::int32_t component;  // 0 where there is one only
 };
 
 /// This rank's block of the file.
 struct PackBlock {
   bool rotation = true;
+  bool mixture = false;  // several components
   disk::h5::Slab particles{};
   std::vector<ParticleRow> rows;  // by id, without gap
   bool has_contacts = false;

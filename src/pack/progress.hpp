@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "confine/state.hpp"
 #include "control/filling.hpp"
+#include "control/mixing.hpp"
 #include "report/record.hpp"
 
 namespace packmpi::pack {
@@ -50,6 +51,7 @@ struct Progress {
   report::SeriesMark series;              ///< NAME.steps.csv
   control::Filling filling;               ///< towards a density; of no meaning without a target
   confine::State confined;                ///< lid and sides; of no meaning before they move
+  control::Mixing mixing;                 ///< of no meaning with one component
   PhaseProgress now;
 };
 

@@ -80,6 +80,22 @@ void each_field(C& confined, Visit visit) {
   visit("over", over);
 }
 
+template <class M, class Visit>
+requires std::is_same_v<std::remove_const_t<M>, control::Mixing>
+void each_field(M& mixing, Visit visit) {
+  auto& [on, counts, drawn, units, wanted, extent, stratum, stratum_extent, stratum_layers, strata] = mixing;
+  visit("on", on);
+  visit("counts", counts);
+  visit("drawn", drawn);
+  visit("units", units);
+  visit("wanted", wanted);
+  visit("extent", extent);
+  visit("stratum", stratum);
+  visit("stratum_extent", stratum_extent);
+  visit("stratum_layers", stratum_layers);
+  visit("strata", strata);
+}
+
 template <class Now, class Visit>
 requires std::is_same_v<std::remove_const_t<Now>, PhaseProgress>
 void each_field(Now& now, Visit visit) {
@@ -99,7 +115,7 @@ template <class P, class Visit>
 requires std::is_same_v<std::remove_const_t<P>, Progress>
 void each_field(P& progress, Visit visit) {
   auto& [first_ids, count, moving_from, energy_given, steps, relaxation_steps, particle_steps, layers, height,
-         compaction_rate, relaxations, height_before_relaxation, series, filling, confined, now] = progress;
+         compaction_rate, relaxations, height_before_relaxation, series, filling, confined, mixing, now] = progress;
   visit("first_ids", first_ids);
   visit("count", count);
   visit("moving_from", moving_from);
@@ -115,6 +131,7 @@ void each_field(P& progress, Visit visit) {
   visit("series", series);
   visit("filling", filling);
   visit("confined", confined);
+  visit("mixing", mixing);
   each_field(now, visit);
 }
 
@@ -132,8 +149,9 @@ void each_field(State& state, Visit visit) {
 }
 
 template <class T>
-constexpr bool is_struct = std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> ||
-                           std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State>;
+constexpr bool is_struct =
+    std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> ||
+    std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State> || std::is_same_v<T, control::Mixing>;
 
 constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
@@ -146,7 +164,9 @@ Phase phase_of(const std::string& name) {
 // What a scene does not use is not there.
 template <class T>
 bool is_off(const T& value) {
-  if constexpr (std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State>) return !value.on;
+  if constexpr (std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State> ||
+                std::is_same_v<T, control::Mixing>)
+    return !value.on;
   return false;
 }
 

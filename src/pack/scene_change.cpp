@@ -17,13 +17,24 @@
 namespace packmpi::pack {
 namespace {
 
-/// key path -> value, of an effective input: a line "[table]" or "key = value" each.
+/// key path -> value, of an effective input: a line "[table]" or "key = value" each. Tables of an array, "[[table]]",
+/// are numbered from 1.
 std::map<std::string, std::string> values_of(const std::string& effective) {
   std::map<std::string, std::string> values;
   std::istringstream lines(effective);
-  std::string table;
+  std::string table, array;
+  std::map<std::string, int> numbers;
+  const auto named = [&](const std::string& name) {
+    const bool within = !array.empty() && name.starts_with(array + ".");
+    return within ? fmt::format("{}[{}]{}.", array, numbers[array], name.substr(array.size())) : name + ".";
+  };
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('[')) table = line.substr(1, line.find(']') - 1) + ".";
+    if (line.starts_with("[[")) {
+      array = line.substr(2, line.find(']') - 2);
+      table = fmt::format("{}[{}].", array, ++numbers[array]);
+    } else if (line.starts_with('[')) {
+      table = named(line.substr(1, line.find(']') - 1));
+    }
     const std::size_t equals = line.find(" = ");
     if (!line.starts_with('[') && equals != std::string::npos) {
       values[table + line.substr(0, equals)] = line.substr(equals + 3);

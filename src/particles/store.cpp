@@ -50,6 +50,8 @@ void permute_cycles(int stride, std::span<LocalIndex> order, double* records, st
       return permute_cycles<8>(order, records, ids);
     case 12:
       return permute_cycles<12>(order, records, ids);
+    case 16:
+      return permute_cycles<16>(order, records, ids);
     default:
       assert(false && "a stride that layout_of() never gives");
   }
@@ -96,8 +98,9 @@ Vec3 Store::spin(LocalIndex i) const noexcept {
   return {s[0] / r, s[1] / r, s[2] / r};
 }
 
-void Store::add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega) {
-  std::array<double, 12> fields{};
+void Store::add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega,
+                const Substance& made_of) {
+  std::array<double, 16> fields{};
   const auto put = [&fields](int at, double value) { fields[static_cast<std::size_t>(at)] = value; };
   for (int d = 0; d < layout_.dimension; ++d) {
     put(layout_.position + d, position[static_cast<std::size_t>(d)]);
@@ -107,6 +110,10 @@ void Store::add(GlobalId id, const Vec3& position, double radius, const Vec3& ve
   put(layout_.curvature, 1.0 / radius);
   for (int c = 0; c < layout_.spin_components(); ++c) {
     put(layout_.spin + c, radius * omega[static_cast<std::size_t>(layout_.dimension == 3 ? c : 2)]);
+  }
+  if (layout_.component >= 0) {
+    put(layout_.component, made_of.code);
+    put(layout_.component + 1, made_of.inverse_mass);
   }
   add_record(id, fields.data());
 }

@@ -39,6 +39,12 @@ class AlignedDoubles {
   std::size_t capacity_ = 0;
 };
 
+/// What a particle of several components is made of.
+struct Substance {
+  double code = 0.0;          ///< of its component, see scene/mixture.hpp
+  double inverse_mass = 0.0;  ///< [1/kg]
+};
+
 /// Owned particles in slots [0, owned()), ghosts in [owned(), owned() + ghosts()).
 /// A ghost carries its owner's bits. Local: no MPI.
 class Store {
@@ -58,11 +64,22 @@ class Store {
   [[nodiscard]] Vec3 velocity(LocalIndex i) const noexcept;  ///< [m/s]
   [[nodiscard]] Vec3 spin(LocalIndex i) const noexcept;  ///< omega [rad/s]; 0 when rotation is off; in 2D (0, 0, omega)
   [[nodiscard]] double radius(LocalIndex i) const noexcept { return record(i)[layout_.radius]; }  ///< [m]
-  [[nodiscard]] std::span<GlobalId> ids() noexcept { return ids_; }                               ///< length total()
+  /// Of layouts that have it.
+  [[nodiscard]] Substance substance(LocalIndex i) const noexcept {
+    const double* c = record(i) + layout_.component;
+    return {c[0], c[1]};
+  }
+  void set_substance(LocalIndex i, const Substance& made_of) noexcept {
+    double* c = record(i) + layout_.component;
+    c[0] = made_of.code, c[1] = made_of.inverse_mass, c[2] = c[3] = 0.0;
+  }
+  [[nodiscard]] std::span<GlobalId> ids() noexcept { return ids_; }  ///< length total()
   [[nodiscard]] std::span<const GlobalId> ids() const noexcept { return ids_; }
 
-  /// Append an owned particle. Precondition: ghosts() == 0. omega [rad/s] is ignored when rotation is off.
-  void add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega);
+  /// Append an owned particle. Precondition: ghosts() == 0. omega [rad/s] is ignored when rotation is off, what it is
+  /// made of when all are made of one material.
+  void add(GlobalId id, const Vec3& position, double radius, const Vec3& velocity, const Vec3& omega,
+           const Substance& made_of = {});
   /// Append an owned particle as it stands in another store of the same layout. Precondition: ghosts() == 0.
   void add_record(GlobalId id, const double* record);
   /// Make room for `count` ghosts; their contents are not set.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/voids.hpp"
+#include "report/composition_words.hpp"
 #include "report/json_seal.hpp"
 #include "report/size_words.hpp"
 
@@ -57,6 +58,7 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
   root["particles"] = a.particles;
   root["mean_diameter"] = a.mean_diameter;
   root["sizes"] = to_json(a.sizes);
+  if (!a.composition.parts.empty()) root["composition"] = composition_to_json(a.composition, {});
   root["density_profile"] = density(a);
   if (!a.radial.profile.values.empty()) {
     root["radial_profile"] = {{"from_wall", profile(a.radial.profile)},
@@ -110,6 +112,8 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     fmt::format_to(std::back_inserter(out), "  {:<58} {:>12.5g}\n", what, value);
   };
   fmt::format_to(std::back_inserter(out), "  {:<58} {:>12}\n", "particles", a.particles);
+  for (const SizeLine& of : composition_lines(a.composition, {}))
+    fmt::format_to(std::back_inserter(out), "  {:<44} {:>26}\n", of.quantity, of.achieved);
   line("coordination number", a.rest.network.coordination);
   line("share with too few contacts", a.rest.network.loose);
   line("rattlers, recursively", a.rest.network.rattlers);

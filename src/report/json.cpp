@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "report/composition_words.hpp"
 #include "report/fields.hpp"
 #include "report/json_seal.hpp"
 #include "report/report.hpp"
@@ -76,6 +77,8 @@ std::string to_json(const RunRecord& record) {
   root["target"] = to_object(target_fields(record));
   root["achieved"] = to_object(achieved_fields(record));
   root["sizes"] = to_json(record.sizes);
+  if (!record.composition.parts.empty())
+    root["composition"] = composition_to_json(record.composition, record.component_masses);
   root["audit"] = to_object(audit_fields(record.audit));
   root["rest"] = to_object(record.criteria);
   root["missed"] = record.missed;

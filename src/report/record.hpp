@@ -10,6 +10,7 @@
 #include "base/digest.hpp"
 #include "base/types.hpp"
 #include "confine/outcome.hpp"
+#include "observe/composition.hpp"
 #include "observe/measure.hpp"
 #include "observe/rest.hpp"
 #include "observe/size_match.hpp"
@@ -113,6 +114,8 @@ struct RunRecord {
   double weight = 0.0;             ///< [N] m g of all particles
   double mean_radius = 0.0, sd_radius = 0.0, min_radius = 0.0, max_radius = 0.0;  ///< [m]
   observe::SizeMatches sizes;                                                     ///< with their targets
+  observe::Composition composition;                                               ///< empty with one component
+  std::vector<double> component_masses;                                           ///< [kg] of each, as asked for
   double time_step = 0.0;                                                         ///< [s]
   std::int64_t steps = 0;
   double duration = 0.0;  ///< [s] simulated

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/voids.hpp"
+#include "report/composition_words.hpp"
 #include "report/report.hpp"
 #include "report/size_words.hpp"
 
@@ -73,6 +74,8 @@ void compare(Buffer& out, const RunRecord& r) {
   if (r.target_min_radius < r.target_max_radius) {
     for (const SizeLine& size : size_lines(r.sizes)) line(out, size.quantity, size.target, size.achieved);
   }
+  for (const SizeLine& of : composition_lines(r.composition, r.component_masses))
+    line(out, of.quantity, of.target, of.achieved);
   line(out, "coordination number", "", number(r.rest.network.coordination));
   line(out, "coordination number without rattlers", "", number(r.rest.network.held_coordination));
   line(out, "rattlers, share", "", number(r.rest.network.rattlers));

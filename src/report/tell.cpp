@@ -6,6 +6,7 @@
 
 #include "base/log.hpp"
 #include "base/voids.hpp"
+#include "report/report.hpp"
 
 namespace packmpi::report {
 namespace {
@@ -33,6 +34,11 @@ void tell_density(const RunRecord& record) {
              fmt::format("density of the bulk: solid fraction {:.4f}, porosity {:.4f}, void ratio {:.4f}", phi,
                          porosity(phi), void_ratio(phi)),
              {{"phi_bulk", phi}, {"porosity_bulk", porosity(phi)}, {"void_ratio_bulk", void_ratio(phi)}});
+}
+
+// What there is of each component, and where strata meet.
+void tell_composition(const RunRecord& record) {
+  for (const std::string& line : composition_log(record)) log::info(line);
 }
 
 void tell_stress(const confine::Outcome& got) {
@@ -73,6 +79,7 @@ void tell(const comm::Comm& comm, const scene::Scene& scene, const RunRecord& re
   tell_density(record);
   tell_stress(record.confined);
   tell_sizes(scene, record.sizes);
+  tell_composition(record);
   tell_rest(comm, record);
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/volume.hpp"
 #include "rsa/insert.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::rsa {
 namespace {
@@ -83,7 +84,21 @@ std::int64_t needed_for_fraction(const comm::Comm& comm, const scene::Scene& sce
 
 }  // namespace
 
+Drawn drawn(const scene::Scene& scene, const LayerRegion& region, std::uint64_t index) {
+  if (region.portions.empty()) return {scene.sizes.draw(region.layer, index, region.first_id), 0};
+  auto number = static_cast<std::int64_t>(index);
+  std::size_t k = 0;
+  for (; k + 1 < region.portions.size() && number >= region.portions[k].count; ++k) number -= region.portions[k].count;
+  const Portion& of = region.portions[k];
+  return {scene::radius_of(scene, of.component, static_cast<std::uint64_t>(of.first + number)), of.component};
+}
+
 std::int64_t particles_needed(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
+  if (!region.portions.empty()) {
+    std::int64_t all = 0;
+    for (const Portion& portion : region.portions) all += portion.count;
+    return all;
+  }
   const std::int64_t count = scene.in.particles.count;
   if (count > 0 && insertion_alone(scene.in)) return count;
   const std::int64_t needed = needed_for_fraction(comm, scene, region);

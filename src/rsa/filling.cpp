@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/volume.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::rsa {
 
@@ -22,7 +23,7 @@ Filling::Filling(const comm::Comm& comm, const scene::Scene& scene, const scene:
   };
   for (std::int64_t k = bound(comm.rank()); k < bound(comm.rank() + 1); ++k) {
     const auto particle = static_cast<std::uint64_t>(k);
-    const double radius = scene.sizes.draw(region.layer, particle, region.first_id);
+    const double radius = drawn(scene, region, particle).radius;
     share_[static_cast<std::size_t>(size_class(scene.sizes, radius))].push_back({particle, radius});
   }
 }
@@ -83,7 +84,11 @@ std::vector<Trial> Filling::make_trials(const Volley& volley) {
 void Filling::append(const Trial& trial, particles::Store& store) {
   const auto& [centre, radius] = trial.sphere;
   const input::Layers& layers = scene_.in.layers;
-  store.add(region_.first_id + static_cast<GlobalId>(trial.particle), centre, radius, layers.velocity, layers.spin);
+  particles::Substance made_of;
+  if (scene_.features.mixture)
+    made_of = scene::substance_of(scene_.in, drawn(scene_, region_, trial.particle).component, radius);
+  store.add(region_.first_id + static_cast<GlobalId>(trial.particle), centre, radius, layers.velocity, layers.spin,
+            made_of);
   volumes_.push_back(geometry::volume(scene_.container.dimension, radius));
 }
 

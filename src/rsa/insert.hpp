@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "comm/comm.hpp"
 #include "particles/store.hpp"
@@ -10,14 +11,30 @@
 
 namespace packmpi::rsa {
 
+/// The particles of a component in a layer, which stand together: number `first` of them all and those behind it.
+struct Portion {
+  int component = 0;
+  std::int64_t first = 0;  ///< 0 .., over all layers
+  std::int64_t count = 0;
+  std::int64_t units = 0;  ///< what they add up to, see scene/mixture.hpp
+};
+
 /// Where and what to insert.
 struct LayerRegion {
-  std::uint32_t layer = 0;  ///< 0 ..
-  double bottom = 0.0;      ///< [m] T: top of the highest particle so far
-  double thickness = 0.0;   ///< [m] h_0
-  GlobalId first_id = 0;    ///< id of the layer's particle 0; ids ascend with the particle index
-  bool clipped = false;     ///< ends at H_d: it may have to do with fewer particles than phi_0 asks for
+  std::uint32_t layer = 0;             ///< 0 ..
+  double bottom = 0.0;                 ///< [m] T: top of the highest particle so far
+  double thickness = 0.0;              ///< [m] h_0
+  GlobalId first_id = 0;               ///< id of the layer's particle 0; ids ascend with the particle index
+  bool clipped = false;                ///< ends at H_d: it may have to do with fewer particles than phi_0 asks for
+  std::vector<Portion> portions = {};  ///< of several components; see rsa/mixing.hpp
 };
+
+/// What particle `index` (0 ..) of the layer is.
+struct Drawn {
+  double radius = 0.0;  ///< [m]
+  int component = 0;    ///< 0 if there is one only
+};
+[[nodiscard]] Drawn drawn(const scene::Scene& scene, const LayerRegion& region, std::uint64_t index);
 
 /// What came of it; the same on all ranks and for any number of them.
 struct Insertion {

@@ -10,6 +10,7 @@
 #include "report/analysis.hpp"
 #include "report/report.hpp"
 #include "run/bed.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -33,10 +34,11 @@ scene::Scene reaching_scene(const pack::PackSlice& slice, const std::string& pat
 }
 
 // This rank's share of the rows, wherever their columns are.
-void take_share(const pack::PackRows& rows, particles::Store& store) {
+void take_share(const pack::PackRows& rows, const scene::Scene& scene, particles::Store& store) {
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
-    store.add(rows.id[k], rows.position[k], rows.radius[k], rows.velocity[k],
-              rows.spin.empty() ? Vec3{} : rows.spin[k]);
+    store.add(rows.id[k], rows.position[k], rows.radius[k], rows.velocity[k], rows.spin.empty() ? Vec3{} : rows.spin[k],
+              rows.component.empty() ? particles::Substance{}
+                                     : scene::substance_of(scene.in, rows.component[k], rows.radius[k]));
   }
 }
 
@@ -69,7 +71,7 @@ std::string analyze(const comm::Comm& comm, const std::string& path) {
     }
   });
   Bed bed(comm, scene);
-  take_share(slice.rows, bed.store);
+  take_share(slice.rows, scene, bed.store);
   const bool springs = give_springs(path, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();

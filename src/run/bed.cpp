@@ -5,6 +5,7 @@
 
 #include "base/log.hpp"
 #include "base/timer.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::run {
 
@@ -14,7 +15,9 @@ Bed::Bed(const comm::Comm& world, const scene::Scene& what)
       ownership(world, what.columns(), what.in.parallel.decomposition),
       store(what.features.layout()),
       neighborhood(world, what, ownership),
-      stepper(world, what) {}
+      stepper(world, what) {
+  progress.mixing = control::begin_mixing(what);
+}
 
 void Bed::freeze_older() {
   const auto window = static_cast<std::size_t>(scene.in.dynamics.window);
@@ -134,6 +137,24 @@ std::vector<std::int32_t> Bed::layers() const {
         static_cast<std::int32_t>(std::ranges::upper_bound(progress.first_ids, id) - progress.first_ids.begin()) - 1);
   }
   return layer;
+}
+
+std::vector<std::int32_t> Bed::strata() const {
+  if (scene.in.strata.empty()) return {};
+  std::vector<std::int32_t> of = layers();
+  for (std::int32_t& k : of) k = static_cast<std::int32_t>(progress.mixing.strata[static_cast<std::size_t>(k)]);
+  return of;
+}
+
+void Bed::mark_components() {
+  if (!scene.features.mixture) return;
+  const std::vector<std::int32_t> layer = layers();
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const auto of = static_cast<std::size_t>(layer[at]);
+    const int component = control::component_of(progress.mixing, of, progress.first_ids[of], store.ids()[at]);
+    store.set_substance(i, scene::substance_of(scene.in, component, store.radius(i)));
+  }
 }
 
 std::size_t Bed::bytes() const noexcept { return store.bytes() + neighborhood.bytes() + stepper.bytes(); }

@@ -70,6 +70,10 @@ struct Bed {
 
   /// Layer of each owned particle, in slot order.
   [[nodiscard]] std::vector<std::int32_t> layers() const;
+  /// Stratum of each owned particle, in slot order; empty without strata.
+  [[nodiscard]] std::vector<std::int32_t> strata() const;
+  /// Gives each owned particle its component's code and mass, by its id. Local.
+  void mark_components();
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated for the particles and all about them
   /// Bytes a particle, frozen or not, on the rank where they are most. Collective.
   [[nodiscard]] double bytes_per_particle() const;

@@ -1,12 +1,14 @@
 #include "run/fill.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "base/timer.hpp"
 #include "control/filling.hpp"
 #include "observe/measure.hpp"
 #include "report/judge.hpp"
 #include "rsa/insert.hpp"
+#include "rsa/mixing.hpp"
 #include "run/sample.hpp"
 #include "run/settle.hpp"
 #include "run/start.hpp"
@@ -20,13 +22,16 @@ void insert_layer(Bed& bed, Attendant& attendant) {
   const scene::Scene& scene = bed.scene;
   pack::Progress& at = bed.progress;
   bed.store.set_ghosts(0);
-  const rsa::LayerRegion region = bed.next_region();
+  rsa::LayerRegion region = bed.next_region();
+  control::Mixing mixing = at.mixing;
+  if (scene.features.mixture) rsa::plan_layer(bed.comm, scene, bed.surface(), mixing, region);
   const LocalIndex before = bed.store.owned();
   const auto look = [&] { attendant.look_while_inserting(before); };
   const Stopwatch watch;
   const rsa::Insertion got = rsa::insert(bed.comm, scene, bed.ownership, region, bed.store, look);
   bed.inserting += watch.seconds();
   at.first_ids.push_back(at.count);
+  at.mixing = std::move(mixing);
   at.energy_given += observe::energy_of(bed.comm, bed.store, scene, at.count, at.count + got.inserted);
   at.count += got.inserted;
   if (at.filling.on) at.filling.layer_knobs.push_back(at.filling.knob);
@@ -129,6 +134,7 @@ bool takes_more(const Bed& bed) {
   const std::int64_t count = bed.scene.in.particles.count;
   if (insertion_alone(bed.scene.in)) return bed.progress.count == 0;
   if (std::ssize(bed.progress.layers) >= scene::most_layers(bed.scene)) return false;
+  if (control::by_mass(bed.scene)) return control::wants_mass(bed.scene, bed.progress.mixing);
   if (count > 0) return bed.progress.count < count && !bed.full();
   if (bed.scene.in.layers.region == input::RegionRule::container) return !bed.full();
   return final_height(bed.scene, bed.progress) < bed.scene.container.height();

@@ -116,16 +116,18 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.particles = at.count;
   record.height = at.height;
   const bool full = at.confined.on ? at.confined.full : bed.full();
-  const bool counted = record.target_particles > 0;
+  const bool counted = record.target_particles > 0, weighed = control::by_mass(scene);
   record.reached = counted                  ? at.count == record.target_particles
                    : record.insertion_alone ? !at.layers.empty()
+                   : weighed                ? !control::wants_mass(scene, at.mixing)
                                             : full || at.height >= record.target_height;
   record.start = taken_words(scene, at);
-  record.stop_reason = counted && record.reached ? "count"
-                       : record.insertion_alone  ? "fraction"
-                       : full                    ? "full"
-                       : record.reached          ? "height"
-                                                 : "layers.maximum";
+  record.stop_reason = counted && record.reached   ? "count"
+                       : record.insertion_alone    ? "fraction"
+                       : full                      ? "full"
+                       : weighed && record.reached ? "mass"
+                       : record.reached            ? "height"
+                                                   : "layers.maximum";
   record.compaction_rate = at.compaction_rate;
   record.layers = at.layers;
   record.relaxations = at.relaxations;
@@ -144,6 +146,8 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.min_radius = sizes.min;
   record.max_radius = sizes.max;
   record.sizes = observe::size_match(comm, bed.store, scene.sizes.curve());
+  record.composition = observe::composition(comm, bed.store, scene, bulk, bed.strata());
+  record.component_masses = control::masses_wanted(scene, at.mixing);
   record.steps = at.steps;
   record.relaxation_steps = at.relaxation_steps;
   record.duration = bed.time();

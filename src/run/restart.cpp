@@ -110,6 +110,7 @@ void put_back(const pack::RunState& state, const pack::Histories& histories, Bed
     confine::apply(bed.progress.confined, *bed.box);
     bed.ownership.stretch(*bed.box);
   }
+  bed.mark_components();
   if (bed.scene.features.memory) bed.give(histories);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   if (bed.progress.moving_from > 0) bed.neighborhood.freeze(bed.store, bed.progress.moving_from);

@@ -9,6 +9,7 @@
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
 #include "scene/limits.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::scene {
 namespace {
@@ -206,10 +207,14 @@ double overlap_below(const Scene& scene, double pressing, double youngs_modulus)
   constexpr double contacts = 5.0;
   constexpr double uneven = 0.9;  // mean of f^(2/3) over that of the mean force, where forces are as uneven as in packs
   const bool flat = scene.container.dimension == 2;
-  const double stress = scene.in.particles.density * scene.in.jamming.gravity * pressing;
+  const input::Particles soft = softest(scene.in);
+  const double stress = soft.density * scene.in.jamming.gravity * pressing;
   if (!(stress > 0.0)) return 0.0;
+  const bool mixture = scene.features.mixture;  // softened, if at all, by one factor
+  const double modulus =
+      mixture ? youngs_modulus / scene.in.particles.youngs_modulus * soft.youngs_modulus : youngs_modulus;
   const double squeeze = (flat ? 2.0 : 3.0) * std::numbers::sqrt2 * std::numbers::pi * stress /
-                         (input::pair_modulus(scene.in.particles, youngs_modulus) * contacts);
+                         (input::pair_modulus(soft, modulus) * contacts);
   const double root = elementary::cube_root(squeeze);
   return uneven * root * root;
 }

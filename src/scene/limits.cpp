@@ -10,10 +10,13 @@
 #include "geometry/volume.hpp"
 #include "input/radius_range.hpp"
 #include "input/time_step.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::scene {
 namespace {
 
+// The last layers of a stratum are cut to size, in so many goes at most.
+constexpr std::int64_t layers_a_cut = 6;
 // Room above the largest force of a regular impact before the integer sums give up, and their range in quanta.
 constexpr double force_headroom = 256.0;
 constexpr double largest_quanta = 1125899906842624.0;  // 2^50, see dynamics/kernel.hpp
@@ -48,7 +51,9 @@ double largest_force(const Scene& scene) {
   const double r = scene.sizes.largest();
   const double k = 4.0 / 3.0 * 2.0 * input::pair_modulus(in.particles, in.particles.youngs_modulus) *
                    std::sqrt(r);  // against a rigid wall: r* = r, m* = m
-  const double m = input::mass(in.particles, r);
+  input::Particles heaviest = in.particles;
+  heaviest.density = densest(in);
+  const double m = input::mass(heaviest, r);
   const double drop = scene.container.height() + 2.0 * in.layers.thickness;
   const double speed = input::impact_speed(in, drop);
   const double square = 5.0 * m * speed * speed / (4.0 * k);
@@ -59,7 +64,10 @@ double largest_force(const Scene& scene) {
   const double contact =
       std::max(impact > 0.0 ? std::min(force_headroom * impact, elastic) : elastic, force_headroom * column);
   const double force = std::max(contact, 4.0 * largest_near_force(scene));
-  return force * (1.0 + std::max(in.contact.friction, in.contact.wall_friction));
+  double friction = std::max(in.contact.friction, in.contact.wall_friction);
+  for (const input::Component& of : in.components) friction = std::max({friction, of.friction, of.wall_friction});
+  for (const input::ComponentPair& of : in.pairs) friction = std::max(friction, of.friction.value_or(0.0));
+  return force * (1.0 + friction);
 }
 
 // What the sums must resolve: the weight of the smallest particle, or without gravity a light touch of it.
@@ -96,7 +104,7 @@ std::int64_t most_layers(const Scene& scene) {
   const input::Layers& layers = in.layers;
   const auto whole =
       static_cast<std::int64_t>(std::ceil(in.container.size.back() / (layers.fraction * layers.thickness))) + 2;
-  if (layers.region == input::RegionRule::open) return whole;
+  if (layers.region == input::RegionRule::open) return whole + layers_a_cut * std::ssize(in.strata);
   // Each of those that end at H_d leaves 1 - phi_0 of the room at most, down to a diameter; twice that, as they may
   // hold less than phi_0.
   const double diameters = 0.5 * layers.thickness / input::radius_range(in.particles.radius).largest;

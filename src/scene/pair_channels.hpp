@@ -50,9 +50,9 @@ struct Rows {
 };
 
 /// What the law of these features reads. A field that is read twice is combined in both ways.
-[[nodiscard]] constexpr Rows<Reading, 8> readings(const Features& f) {
+[[nodiscard]] constexpr Rows<Reading, 9> readings(const Features& f) {
   const particles::Layout layout = f.layout();
-  Rows<Reading, 8> table;
+  Rows<Reading, 9> table;
   table.add({layout.position, layout.dimension, Combine::difference});
   table.add({layout.radius, 1, Combine::sum});
   table.add({layout.velocity, layout.dimension, Combine::difference});
@@ -60,6 +60,7 @@ struct Rows {
   if (f.rotation) table.add({layout.spin, layout.spin_components(), Combine::sum});  // slip at the point of contact
   if (f.rolling) table.add({layout.spin, layout.spin_components(), Combine::difference});
   if (f.rolling && f.graded) table.add({layout.curvature, 1, Combine::difference});
+  if (f.mixture) table.add({layout.component, 2, Combine::sum});  // the pair's code, and 1/m*
   return table;
 }
 

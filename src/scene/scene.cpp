@@ -10,6 +10,7 @@
 #include "input/time_step.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::scene {
 namespace {
@@ -117,7 +118,7 @@ void check_softness(const input::Input& in, const Scene& scene, const char* key,
   if (!(overlap > most)) return;
   refuse(in, fmt::format("{}: {:g} Pa is too soft for this bed: under its weight, density x gravity x H_d = {:.3g} Pa, "
                          "particles would overlap by {:.2g} radii; {:.1e} Pa gives 1 %{}",
-                         key, youngs_modulus, in.particles.density * in.jamming.gravity * in.container.size.back(),
+                         key, youngs_modulus, softest(in).density * in.jamming.gravity * in.container.size.back(),
                          overlap, modulus_for(scene, 0.01, youngs_modulus),
                          youngs_modulus < 1e4 ? "; a number without a unit is in Pa: \"100 MPa\" has one" : ""));
 }
@@ -145,14 +146,27 @@ void check_crushing(const input::Input& in, const Scene& scene) {
                          1.1 * in.particles.youngs_modulus * times * std::sqrt(times)));
 }
 
+// Does any component, or pair of them, have a coefficient above zero?
+bool any(const input::Input& in, double input::Component::*member) {
+  return std::ranges::any_of(in.components, [&](const auto& of) { return of.*member > 0.0; });
+}
+bool any(const input::Input& in, std::optional<double> input::ComponentPair::*member) {
+  return std::ranges::any_of(in.pairs, [&](const auto& of) { return (of.*member).value_or(0.0) > 0.0; });
+}
+
 Features features_of(const input::Input& in) {
   Features f;
   f.dimension = in.container.dimension;
   f.rotation = in.dynamics.rotation;
-  f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  f.mixture = in.components.size() > 1;
+  f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0 || any(in, &input::Component::friction) ||
+               any(in, &input::Component::wall_friction) || any(in, &input::ComponentPair::friction);
   f.memory = f.friction && in.contact.tangential == input::Tangential::mindlin;
-  f.rolling = f.memory && (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0 ||
-                           (in.target && in.target->most_rolling_friction > 0.0));
+  f.rolling = f.memory &&
+              (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0 ||
+               any(in, &input::Component::rolling_friction) || any(in, &input::Component::twisting_friction) ||
+               any(in, &input::ComponentPair::rolling_friction) || any(in, &input::ComponentPair::twisting_friction) ||
+               (in.target && in.target->most_rolling_friction > 0.0));
   f.drag = in.drag.coefficient > 0.0;
   f.near_field = in.near_field.has_value();
   f.graded = in.particles.radius.distribution != input::SizeDistribution::equal;
@@ -231,6 +245,7 @@ Scene build(const input::Input& in) {
   scene.container = container_of(in.container);
   scene.features = features_of(in);
   scene.sizes = Sizes(in.particles.radius, in.seed);
+  for (const input::Component& of : in.components) scene.component_sizes.emplace_back(of.particles.radius, in.seed);
   scene.reach = 2.0 * scene.sizes.largest();
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
   scene.skin = std::min(skin_per_radius * scene.sizes.largest(), skin_per_mean * scene.sizes.mean());

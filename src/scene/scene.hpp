@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "geometry/columns.hpp"
 #include "geometry/container.hpp"
@@ -37,7 +38,8 @@ struct Scene {
   input::Input in;
   geometry::Container container;
   Features features;
-  Sizes sizes;              ///< the size distribution: radius of (layer, particle), bounds
+  Sizes sizes;                         ///< the size distribution: radius of (layer, particle), bounds
+  std::vector<Sizes> component_sizes;  ///< of each component; empty if there is one only
   double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
   double skin = 0.0;        ///< [m] added to reach in neighbour lists; does not change any result
   double time_step = 0.0;   ///< [s] of the final stage, and of the layers unless they have their own

@@ -109,10 +109,45 @@ SizeCurve::SizeCurve(const input::Radius& radius) {
       }
       break;
     }
+    case SizeDistribution::mixture:
+      add_parts(radius);
+      return;
     default:
       add_smooth(radius);
   }
   finish(radius.weighting);
+}
+
+void SizeCurve::add_parts(const input::Radius& radius) {
+  double number = 0.0, mass = 0.0;
+  for (std::size_t k = 0; k < radius.parts.size(); ++k) {
+    Part part{SizeCurve(radius.parts[k]), radius.shares[k], radius.shares[k]};
+    const double cube = part.curve.moment(3);
+    (radius.weighting == Weighting::number ? part.mass *= cube : part.number /= cube);
+    number += part.number, mass += part.mass;
+    parts_.push_back(std::move(part));
+  }
+  for (Part& part : parts_) part.number /= number, part.mass /= mass;
+}
+
+double SizeCurve::smallest() const noexcept {
+  double least = parts_.empty() ? pieces_.front().low : parts_.front().curve.smallest();
+  for (const Part& part : parts_) least = std::min(least, part.curve.smallest());
+  return least;
+}
+
+double SizeCurve::largest() const noexcept {
+  double most = parts_.empty() ? pieces_.back().high : 0.0;
+  for (const Part& part : parts_) most = std::max(most, part.curve.largest());
+  return most;
+}
+
+double SizeCurve::share_of_parts(Weighting weighting, double r) const {
+  double share = 0.0;
+  for (const Part& part : parts_) {
+    share += (weighting == Weighting::number ? part.number : part.mass) * part.curve.passing(weighting, r);
+  }
+  return r < largest() ? share : 1.0;
 }
 
 // Shares are by the distribution's own weighting until finish(). The ends of a curve are where particles are.
@@ -185,6 +220,7 @@ void SizeCurve::finish(Weighting weighting) {
 }
 
 double SizeCurve::passing(Weighting weighting, double r) const {
+  if (!parts_.empty()) return share_of_parts(weighting, r);
   const auto& below = weighting == Weighting::number ? below_number_ : below_mass_;
   const auto piece = std::ranges::upper_bound(pieces_, r, {}, &Piece::high);  // the first that ends above r
   if (piece == pieces_.end()) return 1.0;
@@ -196,6 +232,14 @@ double SizeCurve::passing(Weighting weighting, double r) const {
 }
 
 double SizeCurve::quantile(Weighting weighting, double share) const {
+  if (!parts_.empty()) {
+    double low = smallest(), high = largest();  // share_of_parts(high) = 1
+    if (share_of_parts(weighting, low) >= share) return low;
+    for (double r = 0.5 * (low + high); low < r && r < high; r = 0.5 * (low + high)) {
+      (share_of_parts(weighting, r) < share ? low : high) = r;
+    }
+    return high;
+  }
   const auto& below = weighting == Weighting::number ? below_number_ : below_mass_;
   const auto found = std::ranges::lower_bound(below, share);
   const auto k = std::min(static_cast<std::size_t>(found - below.begin()), below.size() - 1);
@@ -206,11 +250,17 @@ double SizeCurve::quantile(Weighting weighting, double share) const {
 
 double SizeCurve::moment(int power) const {
   double sum = 0.0;
+  for (const Part& part : parts_) sum += part.number * part.curve.moment(power);
   for (const Piece& piece : pieces_) sum += piece.number * mean_power(piece.low, piece.high, piece.power, power);
   return sum;
 }
 
 double SizeCurve::draw(double first, double second) const {
+  for (const Part& part : parts_) {
+    if (first < part.number || &part == &parts_.back())
+      return part.curve.draw(std::min(first / part.number, 1.0), second);
+    first -= part.number;
+  }
   const auto found = std::ranges::upper_bound(below_number_, first);
   const Piece& piece = pieces_[std::min(static_cast<std::size_t>(found - below_number_.begin()), pieces_.size() - 1)];
   return inverse(piece.low, piece.high, exponent(Weighting::number, piece.power), second);
@@ -218,6 +268,13 @@ double SizeCurve::draw(double first, double second) const {
 
 std::vector<double> SizeCurve::corners() const {
   std::vector<double> radii;
+  for (const Part& part : parts_) {
+    const std::vector<double> own = part.curve.corners();
+    radii.insert(radii.end(), own.begin(), own.end());
+  }
+  std::ranges::sort(radii);
+  const auto twice = std::ranges::unique(radii);
+  radii.erase(twice.begin(), twice.end());
   for (const Piece& piece : pieces_) {
     for (const double r : {piece.low, piece.high}) {
       if (radii.empty() || r > radii.back()) radii.push_back(r);

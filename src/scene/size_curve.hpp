@@ -16,8 +16,8 @@ class SizeCurve {
   /// no share is off by more than 1e-5. Precondition: input::check passed.
   explicit SizeCurve(const input::Radius& radius);
 
-  [[nodiscard]] double smallest() const noexcept { return pieces_.front().low; }  ///< [m]
-  [[nodiscard]] double largest() const noexcept { return pieces_.back().high; }   ///< [m]
+  [[nodiscard]] double smallest() const noexcept;  ///< [m]
+  [[nodiscard]] double largest() const noexcept;   ///< [m]
 
   /// `weighting` is by number or by mass here: shares of area are those of mass of no body.
   /// Share of the particles (or the mass) with a radius of at most r [m].
@@ -44,8 +44,19 @@ class SizeCurve {
   void add_list(std::vector<double> radii);
   void add_classes(const std::vector<double>& radii, const std::vector<double>& shares);
 
+  /// Several curves at once: pieces that overlap.
+  struct Part;
+  void add_parts(const input::Radius& radius);
+  [[nodiscard]] double share_of_parts(input::Weighting weighting, double r) const;
+
+  std::vector<Part> parts_;  // none: pieces
   std::vector<Piece> pieces_;
   std::vector<double> below_number_, below_mass_;  // cumulative shares up to the end of each piece; the last is 1
+};
+
+struct SizeCurve::Part {
+  SizeCurve curve;
+  double number, mass;  ///< share of all particles, and of all mass as if of one material
 };
 
 }  // namespace packmpi::scene

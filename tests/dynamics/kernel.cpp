@@ -61,6 +61,8 @@ std::vector<Features> all_features() {
     f.rolling = (bits & 128) != 0;
     const bool whole = (!f.memory || f.friction) && (!f.rolling || (f.memory && f.rotation));
     if (whole) all.push_back(f);
+    f.mixture = true;
+    if (whole && f.graded && f.friction && f.drag) all.push_back(f);
   }
   return all;
 }
@@ -74,6 +76,7 @@ std::string words(const Features& f) {
   if (f.periodic) text += " periodic";
   if (f.memory) text += " memory";
   if (f.rolling) text += " rolling";
+  if (f.mixture) text += " components";
   return text;
 }
 

@@ -362,7 +362,8 @@ TEST_F(Pack, RowsBeyondTwoToTheThirtyFirstLieWhereTheyShould) {
   block.particles = {static_cast<hsize_t>(total), static_cast<hsize_t>(total - 3), 3};
   for (GlobalId id = total - 3; id < total; ++id) {
     const auto x = static_cast<double>(id);
-    block.rows.push_back({id, {x, -x, 0.5}, {1.0, x, 2.0}, {3.0, 4.0, x}, 0.25 * x, 7, static_cast<int>(total - id)});
+    block.rows.push_back(
+        {id, {x, -x, 0.5}, {1.0, x, 2.0}, {3.0, 4.0, x}, 0.25 * x, 7, static_cast<int>(total - id), 0});
   }
   block.has_contacts = true;
   block.contacts = {static_cast<hsize_t>(3 * total), static_cast<hsize_t>(3 * total - 1), 1};

@@ -4,15 +4,31 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "geometry/container.hpp"
+#include "scene/mixture.hpp"
 #include "scene/pair_channels.hpp"
 
 namespace packmpi::support {
 namespace {
 
 constexpr double radius = 0.02;  // [m] of equal particles
+
+/// Of two and three components, that is of their codes 0, 1 and 3: each pair has constants of its own.
+void add_components(const scene::Features& features, Dice& dice, dynamics::Law& law) {
+  auto tables = std::make_shared<std::vector<dynamics::LawConstants>>(
+      static_cast<std::size_t>(scene::pair_codes + scene::wall_codes), law.pair);
+  for (dynamics::LawConstants& c : *tables) {
+    c.stiffness *= dice(0.1, 1.0), c.damping *= dice(0.1, 1.0), c.friction *= dice();
+    c.shear_stiffness *= dice(0.1, 1.0), c.shear_damping *= dice();
+    if (features.rolling) c.rolling_friction *= dice(), c.twisting_friction *= dice();
+  }
+  law.pair_table = tables->data();
+  law.wall_table = tables->data() + scene::pair_codes;
+  law.tables = tables;
+}
 
 dynamics::Law random_law(const scene::Features& features, Dice& dice) {
   dynamics::Law law{};
@@ -25,12 +41,13 @@ dynamics::Law random_law(const scene::Features& features, Dice& dice) {
   law.slip_rate = dice() < 0.7 ? 1e4 : 1e150;
   law.slip_mass = dice() < 0.7 ? 2.0 / 7.0 : 1.0;
   law.lowest_force = dice() < 0.7 ? 0.0 : -HUGE_VAL;
-  if (!features.memory) return law;
   for (dynamics::LawConstants* c : {&law.pair, &law.wall}) {
+    if (!features.memory) continue;
     c->shear_stiffness = 1.3 * c->stiffness;
     c->shear_damping = 2.0 * 0.1 * std::sqrt(c->shear_stiffness * law.slip_mass);
     if (features.rolling) c->rolling_friction = dice(0.0, 0.2), c->twisting_friction = dice(0.0, 0.1);
   }
+  if (features.mixture) add_components(features, dice, law);
   return law;
 }
 
@@ -75,6 +92,10 @@ void Cloud::fill(Dice& dice) {
     p[layout.curvature] = 1.0 / r;
     for (int a = 0; a < layout.spin_components(); ++a) p[layout.spin + a] = dice(-1.0, 1.0);
     if (dice() < 0.1) std::fill_n(p + layout.velocity, layout.dimension, 0.0);
+    if (layout.component >= 0) {
+      p[layout.component] = scene::code_of(static_cast<int>(dice.below(3)));
+      p[layout.component + 1] = law.mass_factor / (r * r * r) * dice(0.2, 1.0);
+    }
     ids.push_back(i);
   }
 }

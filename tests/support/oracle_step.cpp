@@ -17,6 +17,7 @@ using scene::Features;
 struct Grain {
   Vec3 x{}, v{}, s{};  // s = r omega; in the plane only s[2]
   double r = 0.0, k = 0.0;
+  double code = 0.0, inverse_mass = 0.0;  // of several components
 };
 
 struct Quanta {
@@ -51,6 +52,7 @@ Grain read(const Features& features, const StepData& data, LocalIndex i) {
   }
   g.r = p[layout.radius];
   g.k = p[layout.curvature];
+  if (features.mixture) g.code = p[layout.component], g.inverse_mass = p[layout.component + 1];
   if (layout.rotation && layout.dimension == 3) g.s = {p[layout.spin], p[layout.spin + 1], p[layout.spin + 2]};
   if (layout.rotation && layout.dimension == 2) g.s[2] = p[layout.spin];
   return g;
@@ -237,8 +239,15 @@ Effect pair_effect(const Features& f, const StepData& data, const Grain& i, cons
     reduced_radius = a * b;
     reduced_mass = r * k * b;
   }
+  if (f.mixture) {
+    const double w = j.inverse_mass + i.inverse_mass;
+    const double b = 1.0 / ((j.k + i.k) * w);
+    reduced_radius = w * b;
+    reduced_mass = (j.k + i.k) * b;
+  }
+  const LawConstants& constants = f.mixture ? data.law.pair_table[static_cast<int>(i.code + j.code)] : data.law.pair;
   const double overlap = std::max(j.r + i.r - distance, 0.0);
-  return contact(f, data, data.law.pair, {reduced_radius, reduced_mass, n, distance, overlap, u, s, spin}, springs);
+  return contact(f, data, constants, {reduced_radius, reduced_mass, n, distance, overlap, u, s, spin}, springs);
 }
 
 Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neighbor::Wall wall, Springs& springs) {
@@ -279,11 +288,13 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neig
     reduced_radius = i.r;
     reduced_mass = 1.0 / (data.law.mass_factor * i.k * i.k * i.k);
   }
+  if (f.mixture) reduced_mass = 1.0 / i.inverse_mass;
+  const LawConstants& constants = f.mixture ? data.law.wall_table[static_cast<int>(i.code)] : data.law.wall;
   const double k = f.graded ? i.k : 1.0 / data.law.wall.reduced_radius;
   const Vec3 u = {-i.v[0], -i.v[1], -i.v[2]};
   const Vec3 spin = {-(k * i.s[0]), -(k * i.s[1]), -(k * i.s[2])};
   const double overlap = std::max(i.r - distance, 0.0);
-  return contact(f, data, data.law.wall, {reduced_radius, reduced_mass, n, HUGE_VAL, overlap, u, i.s, spin}, springs);
+  return contact(f, data, constants, {reduced_radius, reduced_mass, n, HUGE_VAL, overlap, u, i.s, spin}, springs);
 }
 
 /// `sign`: 1 for the first end, -1 for the second; k: its 1/r.
@@ -317,7 +328,9 @@ void store_at(const Features& f, const Springs& s, const dynamics::StoredVectors
 }
 
 void advance(const Features& f, const StepData& data, const Quanta& sum, Grain& g) {
-  const double inverse_mass = f.graded ? data.law.mass_factor * g.k * g.k * g.k : 1.0 / data.law.wall.reduced_mass;
+  const double inverse_mass = f.mixture  ? g.inverse_mass
+                              : f.graded ? data.law.mass_factor * g.k * g.k * g.k
+                                         : 1.0 / data.law.wall.reduced_mass;
   for (std::size_t a = 0; a < static_cast<std::size_t>(f.dimension); ++a) {
     double force = static_cast<double>(sum.force[a]) * data.force_quantum;
     if (f.drag) force -= data.drag * (g.v[a] - data.fluid_velocity[a]);

@@ -1,6 +1,6 @@
-"""Plots of a pack: density profile, target and achieved sizes, pair distribution, how it settled.
+"""Plots of a pack: density profile, composition over the height, target and achieved sizes, pair distribution, how it settled.
 
-usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density lateral segregation sizes ...] [--program packmpi]
+usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density composition lateral segregation sizes ...] [--program packmpi]
 
 Writes NAME.density.png and so on beside the pack, or in FOLDER. The numbers are those of `packmpi analyze`, which is run
 first if NAME.analysis.json is older than the pack or not there; the history is NAME.steps.csv, and is left out if that is not
@@ -61,6 +61,25 @@ def density(pack: Pack, analysis: dict[str, Any]) -> Figure:
     return figure
 
 
+def composition(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Share of each component in the solid volume over the height; None with one component."""
+    found = analysis.get("composition")
+    if not found:
+        return None
+    scale, unit = length_unit(pack.size[-1])
+    shares = np.array(found["volume_shares"], dtype=float)
+    edges = scale * found["slab_height"] * np.arange(len(shares) + 1)
+    figure, axes = new_figure()
+    below = np.zeros(len(shares))
+    for k, one in enumerate(found["components"]):
+        colour = plt.get_cmap("viridis")(0.15 + 0.75 * k / max(1, len(found["components"]) - 1))
+        axes.stairs(below + shares[:, k], edges, baseline=below, fill=True, color=colour, label=one["name"])
+        below += shares[:, k]
+    axes.set(xlabel=f"height [{unit}]", ylabel="share of the solid volume", xlim=(0.0, edges[-1]), ylim=(0.0, 1.0))
+    legend_above(axes)
+    return figure
+
+
 def lateral(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
     """Solid fraction of the bulk across it, from one side to the other; None where the analysis has none."""
     profiles = {axis: analysis["density_profile"][axis] for axis in "xy"[:pack.dimension - 1] if axis in analysis["density_profile"]}
@@ -108,10 +127,28 @@ def size_axis(axes: Axes, low: float, high: float, unit: str) -> None:
     axes.set(xlabel=f"diameter [{unit}]", ylabel="passing [%]", ylim=(-2.0, 102.0))
 
 
+def component_sizes(pack: Pack) -> Figure:
+    """What passes a sieve by mass, of each component."""
+    scale, unit = length_unit(2.0 * pack.radius.max())
+    scale *= 2.0
+    figure, axes = new_figure()
+    for k, name in enumerate(pack.components):
+        own = pack.radius[pack.component == k]
+        if len(own):
+            r, _, mass = size_curves.achieved_curve(own)
+            axes.step(scale * np.append(r[0], r), 100.0 * np.append(0.0, mass), where="post", label=f"{name}, by mass",
+                      color=plt.get_cmap("viridis")(0.15 + 0.75 * k / max(1, len(pack.components) - 1)))
+    size_axis(axes, scale * pack.radius.min(), scale * pack.radius.max(), unit)
+    axes.legend()
+    return figure
+
+
 def sizes(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
     """What passes a sieve, target and achieved, by mass and by number; None if all radii are equal."""
     if np.ptp(pack.radius) == 0.0:
         return None
+    if pack.components:
+        return component_sizes(pack)
     target_r, *target = size_curves.target_curve(pack.scene()["particles"]["radius"])
     achieved_r, *achieved = size_curves.achieved_curve(pack.radius)
     scale, unit = length_unit(2.0 * pack.radius.max())
@@ -233,7 +270,7 @@ def rose(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
     return figure
 
 
-PLOTS = {"density": density, "lateral": lateral, "segregation": segregation, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
+PLOTS = {"density": density, "composition": composition, "lateral": lateral, "segregation": segregation, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
          "settling": settling}
 
 

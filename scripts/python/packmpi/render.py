@@ -1,6 +1,6 @@
 """A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the target height.
 
-usage: packmpi render PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed ...] [--size pixels] [--no-chains]
+usage: packmpi render PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed|component ...] [--size pixels] [--no-chains]
 
 3D is drawn by VTK on a (virtual) X screen, 2D by matplotlib. Several colours make several pictures, picture.radius.png and
 so on. A 2D pack with /contacts (output.contacts = true) gets its force chains, lines as thick as the normal forces; of several
@@ -29,7 +29,7 @@ from .pack import Floats, Pack  # noqa: E402
 from .style import BACKGROUND, INK, LID, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
 
-PROPERTIES = ("radius", "layer", "contacts", "speed")
+PROPERTIES = ("radius", "layer", "contacts", "speed", "component")
 
 
 def softened(name: str) -> colors.Colormap:
@@ -42,12 +42,15 @@ class Colouring:
 
     def __init__(self, pack: Pack, what: Union[str, None] = None) -> None:
         equal = pack.count == 0 or np.ptp(pack.radius) == 0.0
-        self.what = what or ("layer" if equal else "radius")
+        if what == "component" and not pack.components:
+            raise Problem(f"{pack.path} has one component only")
+        self.what = what or ("component" if pack.components else "layer" if equal else "radius")
         scale, unit = length_unit(float(pack.radius.max()) if pack.count else 1.0)
         self.values, self.label, cmap = {
             "radius": (scale * pack.radius, f"radius [{unit}]", "viridis"),
             "layer": (pack.layer + 1, "layer of insertion", "viridis"),
             "contacts": (pack.contacts, "coordination number", "plasma"),
+            "component": (pack.component, ", ".join(f"{k}: {name}" for k, name in enumerate(pack.components)), "viridis"),
             "speed": (np.maximum(pack.speed, 1e-12), "speed [m/s]", "magma"),
         }[self.what]
         self.cmap = softened(cmap)
@@ -59,7 +62,7 @@ class Colouring:
         if len(self.values) == 0:
             return colors.Normalize(0.0, 1.0)
         low, high = float(self.values.min()), float(self.values.max())
-        if self.what in ("layer", "contacts"):
+        if self.what in ("layer", "contacts", "component"):
             return self.steps(int(low), int(high))
         if self.what == "speed":  # over decades; the slowest hundredth shares one colour
             low = max(float(np.percentile(self.values, 1.0)), high * 1e-8)

@@ -132,6 +132,7 @@ def pictures(pack: Pack, folder: Path, pixels: int) -> str:
 
 CAPTIONS = {
     "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
+    "composition": "What the solid is of, over the height.",
     "lateral": "Solid fraction of the bulk from one side to the other; flat walls order the nearest layers, and the profile swings there.",
     "segregation": "Mean radius over the height: level where sizes are not sorted by it. Steps beyond chance need many particles in a slab.",
     "sizes": "Target sizes (dashed) and achieved ones, as sieves would show them.",
@@ -142,7 +143,7 @@ CAPTIONS = {
     "settling": "How the layers settled; energies are those of the particles that move."}
 
 MISSING = {
-    "density": "No density profile.", "lateral": "No lateral profile.", "segregation": "All radii are equal, or the pack is too low: no profile of sizes.", "sizes": "All radii are equal: no size curves.",
+    "density": "No density profile.", "composition": "One component.", "lateral": "No lateral profile.", "segregation": "All radii are equal, or the pack is too low: no profile of sizes.", "sizes": "All radii are equal: no size curves.",
     "pairs": "The pack is too small for a pair distribution.",
     "coordination": "No particle touches another.", "forces": "Too few contacts for a distribution of forces.",
     "rose": "No contact orientations: the pack was written without output.contacts = true, or has too few contacts.",
@@ -153,6 +154,8 @@ def plots(pack: Pack, analysis: dict[str, Any], folder: Path) -> str:
     """All plots that there are, and why the others are not."""
     drawn, notes = [], []
     for name, words in CAPTIONS.items():
+        if name == "composition" and not pack.components:
+            continue
         path = folder / f"{name}.svg"
         if plot.draw(name, pack, analysis, path):
             adapt(path)
@@ -190,6 +193,10 @@ def comparison(pack: Pack, analysis: dict[str, Any]) -> str:
             ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"],
             ["porosity of the bulk, 1 − φ", "–", f"{pack.porosity_bulk:.4f}", "–"],
             ["void ratio of the bulk, (1 − φ) / φ", "–", number(pack.void_ratio_bulk if pack.phi_bulk else None), "–"]]
+    for one in analysis.get("composition", {}).get("components", []):
+        index = "–" if one["lacey_index"] is None else f"{one['lacey_index']:.3f} ± {one['lacey_error']:.3f}"
+        rows += [[f"Component {html.escape(one['name'])}"], ["particles", "–", number(one["count"]), "–"],
+                 ["mass [kg]", "–", number(one["mass"], 6), "–"], ["mixing, Lacey's index (1: by chance)", "–", index, "–"]]
     for kind, match in analysis["sizes"].items():
         rows += size_rows(kind, match, 2.0 * pack.radius.max())
     return table(["", "target", "achieved", "difference"], rows, "target and achieved")

@@ -1,4 +1,4 @@
-#include "input/time_step.hpp"
+#include "asked/time_step.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "input/radius_range.hpp"
+#include "asked/radius_range.hpp"
 
 #include <algorithm>
 
-#include "input/grading.hpp"
+#include "asked/grading.hpp"
 
 namespace packmpi::input {
 
@@ -21,6 +21,14 @@ RadiusRange radius_range(const Radius& radius) {
     case SizeDistribution::grading: {
       const Curve curve = kept_curve(radius);
       return {0.5 * curve.front()[0], 0.5 * curve.back()[0]};
+    }
+    case SizeDistribution::mixture: {
+      RadiusRange all = radius_range(radius.parts.front());
+      for (const Radius& part : radius.parts) {
+        const RadiusRange own = radius_range(part);
+        all = {std::min(all.smallest, own.smallest), std::max(all.largest, own.largest)};
+      }
+      return all;
     }
     default:
       return {radius.min, radius.max};

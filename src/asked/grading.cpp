@@ -1,4 +1,4 @@
-#include "input/grading.hpp"
+#include "asked/grading.hpp"
 
 #include <fmt/format.h>
 
