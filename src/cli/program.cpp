@@ -28,9 +28,9 @@
 #include "run/files.hpp"
 #include "run/finished.hpp"
 #include "run/make_pack.hpp"
-#include "run/start.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
+#include "source/fit.hpp"
 
 namespace packmpi::cli {
 namespace {
@@ -126,7 +126,7 @@ std::string told(const comm::Comm& comm, const Request& request) {
 // Of `run` and `check`.
 int use_scene(const comm::Comm& comm, const Request& request) {
   const Occupation now("the scene and its lateral grid");
-  const input::Input in = run::with_start(comm, input::read(comm, request.run.scene, request.run.overrides));
+  const input::Input in = source::with_start(comm, input::read(comm, request.run.scene, request.run.overrides));
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   expect_memory(forecast::memory_a_rank(scene, comm.size()));

@@ -11,8 +11,8 @@
 #include "library/failure.hpp"
 #include "packmpi/run.hpp"
 #include "run/analyze.hpp"
-#include "run/start.hpp"
 #include "scene/ownership.hpp"
+#include "source/fit.hpp"
 
 namespace packmpi {
 namespace {
@@ -45,7 +45,7 @@ std::string check(const Scene& what, MPI_Comm world) {
   const comm::Comm comm(world);
   std::string words;
   library::together(comm, what.file(), [&] {
-    const scene::Scene scene = scene::build(run::with_start(comm, what.input()));
+    const scene::Scene scene = scene::build(source::with_start(comm, what.input()));
     comm::agree_on(comm, [&] { words = check_words(scene); });
   });
   return words;

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
 #include <limits>
 
 #include "base/log.hpp"
 #include "input/read.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
-#include "pack/scene_change.hpp"
 #include "report/json_seal.hpp"
+#include "source/fit.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -20,42 +18,6 @@ namespace {
 // Reasons to stop of layers that were taken over.
 constexpr const char* without_springs = "taken over";
 constexpr const char* with_springs = "taken over, with what contacts remember";
-
-[[noreturn]] void refuse(const scene::Scene& scene, const std::string& words) {
-  throw Error(ExitCode::bad_input, fmt::format("{}: {}", scene.in.file, words));
-}
-
-std::string path_of(const input::Input& in) {
-  return (std::filesystem::path(in.file).parent_path() / in.start->pack).string();
-}
-
-// Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
-void check_sides(const scene::Scene& scene, const confine::State& source) {
-  for (std::size_t a = 0; source.on && a < static_cast<std::size_t>(scene.container.lateral_axes()); ++a) {
-    if (source.size[a] == scene.container.size[a]) continue;
-    refuse(scene,
-           "start.pack: its sides were moved by [confinement], and a scene has them where container.size says; go "
-           "on from a pack that was made without lateral and isotropic");
-  }
-}
-
-void check_radii(const scene::Scene& scene, double smallest, double largest) {
-  if (smallest >= scene.sizes.smallest() && largest <= scene.sizes.largest()) return;
-  refuse(scene, fmt::format("start.pack: its radii are {:g} to {:g} m, those of the scene {:g} to {:g} m; give "
-                            "particles.radius a range that has both",
-                            smallest, largest, scene.sizes.smallest(), scene.sizes.largest()));
-}
-
-// Do particles feel other forces than where they came to rest?
-bool feels_anew(const input::Input& source, const scene::Scene& scene) {
-  const std::string changes = pack::forbidden_changes(source.effective, scene.in.effective, pack::RunIs::finished);
-  constexpr std::array tables{"contact.",          "jamming.",          "drag.",
-                              "near_field.",       "particles.density", "particles.youngs",
-                              "particles.poisson", "dynamics.rotation"};
-  return std::ranges::any_of(tables, [&](const char* table) {
-    return changes.starts_with(table) || changes.find(fmt::format("; {}", table)) != std::string::npos;
-  });
-}
 
 void add_particles(const pack::PackRows& rows, particles::Store& store) {
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
@@ -88,9 +50,9 @@ std::vector<GlobalId> first_ids_of(const comm::Comm& comm, const pack::PackRows&
 }
 
 // Collective. What its contacts remember goes on if it is there and the law is the same; whether it does.
-bool take_springs(const std::string& path, const input::Input& source, Bed& bed) {
+bool take_springs(const std::string& path, const input::Input& made, Bed& bed) {
   const scene::Features& wanted = bed.scene.features;
-  if (!wanted.memory || feels_anew(source, bed.scene)) return false;
+  if (!wanted.memory || source::feels_anew(made, bed.scene)) return false;
   const pack::Histories found = pack::histories_of(bed.comm, path, bed.scene);
   if (!found.any() || found.features.rolling != wanted.rolling) return false;
   bed.give(found);
@@ -123,58 +85,41 @@ double check_overlaps(const Bed& bed) {
       observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   const double worst = std::max(touching.max_overlap, touching.max_wall_penetration);
   if (valid.outside > 0)
-    refuse(scene, fmt::format("start.pack: {} particles are outside the container", valid.outside));
+    source::refuse(scene, fmt::format("start.pack: {} particles are outside the container", valid.outside));
   if (worst > scene.in.start->overlap) {
-    refuse(scene, fmt::format(
-                      "start.pack: its deepest overlap is {:.3g} radii, beyond start.overlap_limit = {:g}; raise that, "
-                      "or give a pack that is at rest",
-                      worst, scene.in.start->overlap));
+    source::refuse(
+        scene,
+        fmt::format("start.pack: its deepest overlap is {:.3g} radii, beyond start.overlap_limit = {:g}; raise that, "
+                    "or give a pack that is at rest",
+                    worst, scene.in.start->overlap));
   }
   return worst;
 }
 
 }  // namespace
 
-input::Input with_start(const comm::Comm& comm, input::Input in) {
-  if (!in.start) return in;
-  std::string digest;
-  comm::agree_on(comm, [&] {
-    if (comm.rank() == 0) digest = report::hexadecimal(pack::seal_of(path_of(in)));
-  });
-  digest = comm.broadcast(0, digest);
-  if (!in.start->digest.empty() && in.start->digest != digest) {
-    throw Error(ExitCode::bad_input, fmt::format("{}: start.digest: is {}, and {} has {}; it is another pack", in.file,
-                                                 in.start->digest, in.start->pack, digest));
-  }
-  in.start->digest = digest;
-  in.effective = input::effective_of(in);
-  return in;
-}
-
 void take_over(Bed& bed) {
   const scene::Scene& scene = bed.scene;
-  const std::string path = path_of(scene.in);
+  const std::string path = source::path_of(scene.in);
   const std::uint64_t seal = pack::check_pack(bed.comm, path);
   pack::PackSlice slice;
-  input::Input source;
+  input::Input made;
   comm::agree_on(bed.comm, [&] {
-    if (report::hexadecimal(seal) != scene.in.start->digest) refuse(scene, "start.pack: was changed while it was read");
+    if (report::hexadecimal(seal) != scene.in.start->digest)
+      source::refuse(scene, "start.pack: was changed while it was read");
     slice = pack::read_slice(path, bed.comm.rank(), bed.comm.size());
-    source = input::parse(slice.scene, path, {});
-    const std::string moved = pack::container_change(source.container, scene.in.container);
-    if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
-    check_sides(scene, slice.confined);
-    for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
+    made = input::parse(slice.scene, path, {});
+    source::check_fit(scene, made, slice);
   });
   add_particles(slice.rows, bed.store);
   const std::vector<GlobalId> first_ids = first_ids_of(bed.comm, slice.rows);
   slice = {};
-  const bool springs = take_springs(path, source, bed);
+  const bool springs = take_springs(path, made, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
   set_progress(bed, first_ids, springs);
   const double worst = check_overlaps(bed);
-  if (feels_anew(source, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
+  if (source::feels_anew(made, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
   log::info(fmt::format("start: {}; deepest overlap {:.2e} radii, height {:.4g} m", taken_words(scene, bed.progress),
                         worst, bed.progress.height));
 }

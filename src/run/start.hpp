@@ -7,11 +7,6 @@
 
 namespace packmpi::run {
 
-/// The scene with the digest of the pack that it starts from, which makes it another scene than with another pack; as
-/// it is if it starts from none. Collective. Throws Error(bad_input) if it has the digest of another pack,
-/// Error(io_failure) if there is no such pack.
-[[nodiscard]] input::Input with_start(const comm::Comm& comm, input::Input in);
-
 /// Puts the particles of the pack that the scene starts from into an empty bed, on any number of ranks: ids, positions,
 /// radii, velocities, spins, layers, to the bit; what contacts remember if the pack has it and forces are the same. If
 /// they are others than in the pack's scene, the final stage comes next, even if no layer does. Collective. Throws

@@ -1,0 +1,77 @@
+#include "source/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "input/read.hpp"
+#include "pack/scene_change.hpp"
+#include "report/json_seal.hpp"
+
+namespace packmpi::source {
+namespace {
+
+// Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
+void check_sides(const scene::Scene& scene, const confine::State& source) {
+  for (std::size_t a = 0; source.on && a < static_cast<std::size_t>(scene.container.lateral_axes()); ++a) {
+    if (source.size[a] == scene.container.size[a]) continue;
+    refuse(scene,
+           "start.pack: its sides were moved by [confinement], and a scene has them where container.size says; go "
+           "on from a pack that was made without lateral and isotropic");
+  }
+}
+
+void check_radii(const scene::Scene& scene, double smallest, double largest) {
+  if (smallest >= scene.sizes.smallest() && largest <= scene.sizes.largest()) return;
+  refuse(scene, fmt::format("start.pack: its radii are {:g} to {:g} m, those of the scene {:g} to {:g} m; give "
+                            "particles.radius a range that has both",
+                            smallest, largest, scene.sizes.smallest(), scene.sizes.largest()));
+}
+
+}  // namespace
+
+void refuse(const scene::Scene& scene, const std::string& words) {
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", scene.in.file, words));
+}
+
+std::string path_of(const input::Input& in) {
+  return (std::filesystem::path(in.file).parent_path() / in.start->pack).string();
+}
+
+input::Input with_start(const comm::Comm& comm, input::Input in) {
+  if (!in.start) return in;
+  std::string digest;
+  comm::agree_on(comm, [&] {
+    if (comm.rank() == 0) digest = report::hexadecimal(pack::seal_of(path_of(in)));
+  });
+  digest = comm.broadcast(0, digest);
+  if (!in.start->digest.empty() && in.start->digest != digest) {
+    throw Error(ExitCode::bad_input, fmt::format("{}: start.digest: is {}, and {} has {}; it is another pack", in.file,
+                                                 in.start->digest, in.start->pack, digest));
+  }
+  in.start->digest = digest;
+  in.effective = input::effective_of(in);
+  return in;
+}
+
+void check_fit(const scene::Scene& scene, const input::Input& made, const pack::PackSlice& slice) {
+  const std::string moved = pack::container_change(made.container, scene.in.container);
+  if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
+  check_sides(scene, slice.confined);
+  for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
+}
+
+bool feels_anew(const input::Input& made, const scene::Scene& scene) {
+  const std::string changes = pack::forbidden_changes(made.effective, scene.in.effective, pack::RunIs::finished);
+  constexpr std::array tables{"contact.",          "jamming.",          "drag.",
+                              "near_field.",       "particles.density", "particles.youngs",
+                              "particles.poisson", "dynamics.rotation"};
+  return std::ranges::any_of(tables, [&](const char* table) {
+    return changes.starts_with(table) || changes.find(fmt::format("; {}", table)) != std::string::npos;
+  });
+}
+
+}  // namespace packmpi::source

@@ -1,0 +1,30 @@
+/// What a scene with [start] goes on from, and whether it fits.
+#pragma once
+#include <string>
+
+#include "comm/comm.hpp"
+#include "input/input.hpp"
+#include "pack/pack.hpp"
+#include "scene/scene.hpp"
+
+namespace packmpi::source {
+
+/// Throws Error(bad_input): the scene's file, and the words.
+[[noreturn]] void refuse(const scene::Scene& scene, const std::string& words);
+
+/// Of the pack, from where the program runs. Local.
+[[nodiscard]] std::string path_of(const input::Input& in);
+
+/// The scene with the digest of the pack that it starts from, which makes it another scene than with another pack; as
+/// it is if it starts from none. Collective. Throws Error(bad_input) if it has the digest of another pack,
+/// Error(io_failure) if there is no such pack.
+[[nodiscard]] input::Input with_start(const comm::Comm& comm, input::Input in);
+
+/// Throws Error(bad_input) if the pack, which the scene `made` made, has another container than the scene or radii that
+/// the scene has not. Local.
+void check_fit(const scene::Scene& scene, const input::Input& made, const pack::PackSlice& slice);
+
+/// Do particles feel other forces in the scene than in `made`, where they came to rest? Local.
+[[nodiscard]] bool feels_anew(const input::Input& made, const scene::Scene& scene);
+
+}  // namespace packmpi::source
