@@ -25,13 +25,15 @@ struct ContactSpans {
 /// "collective".
 class Packing {
  public:
-  [[nodiscard]] std::int64_t count() const noexcept;                      ///< N, the particles here
-  [[nodiscard]] std::span<const std::int64_t> id() const noexcept;        ///< (N), ascending; in all ranks 0 ..
-  [[nodiscard]] std::span<const double> position() const noexcept;        ///< (N, 3) [m]; in 2D z is 0
-  [[nodiscard]] std::span<const double> radius() const noexcept;          ///< (N) [m]
-  [[nodiscard]] std::span<const double> velocity() const noexcept;        ///< (N, 3) [m/s]
-  [[nodiscard]] std::span<const double> spin() const noexcept;            ///< (N, 3) [rad/s]; empty without rotation
-  [[nodiscard]] std::span<const std::int32_t> layer() const noexcept;     ///< (N), of insertion, from 0
+  [[nodiscard]] std::int64_t count() const noexcept;                   ///< N, the particles here
+  [[nodiscard]] std::span<const std::int64_t> id() const noexcept;     ///< (N), ascending; in all ranks 0 ..
+  [[nodiscard]] std::span<const double> position() const noexcept;     ///< (N, 3) [m]; in 2D z is 0
+  [[nodiscard]] std::span<const double> radius() const noexcept;       ///< (N) [m]
+  [[nodiscard]] std::span<const double> velocity() const noexcept;     ///< (N, 3) [m/s]
+  [[nodiscard]] std::span<const double> spin() const noexcept;         ///< (N, 3) [rad/s]; empty without rotation
+  [[nodiscard]] std::span<const std::int32_t> layer() const noexcept;  ///< (N), of insertion, from 0
+  /// (N), number of its [[component]] in the scene, from 0; empty with one.
+  [[nodiscard]] std::span<const std::int32_t> component() const noexcept;
   [[nodiscard]] std::span<const std::int32_t> contacts() const noexcept;  ///< (N), touching particles
   [[nodiscard]] const ContactSpans& pair_contacts() const noexcept;       ///< between particles
   [[nodiscard]] const ContactSpans& wall_contacts() const noexcept;       ///< with walls

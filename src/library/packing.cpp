@@ -10,11 +10,12 @@
 #include "library/rows.hpp"
 #include "pack/pack.hpp"
 #include "report/report.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi {
 namespace {
 
-constexpr std::size_t longest_record = 12;  // doubles (particles/layout.hpp)
+constexpr std::size_t longest_record = 16;  // doubles (particles/layout.hpp)
 
 /// A particle on its way.
 struct ParticleRow {
@@ -27,7 +28,7 @@ void append(std::vector<double>& all, const Vec3& v) { all.insert(all.end(), v.b
 
 /// Fills in a share from particles sorted by id.
 void take(const std::vector<ParticleRow>& particles, Packing::Rows& rows) {
-  const bool rotation = rows.store.layout().rotation;
+  const bool rotation = rows.store.layout().rotation, mixture = rows.store.layout().component >= 0;
   for (const ParticleRow& particle : particles) {
     rows.store.add_record(particle.id, particle.record.data());
     const LocalIndex i = rows.store.owned() - 1;
@@ -36,6 +37,7 @@ void take(const std::vector<ParticleRow>& particles, Packing::Rows& rows) {
     append(rows.velocity, rows.store.velocity(i));
     if (rotation) append(rows.spin, rows.store.spin(i));
     rows.radius.push_back(rows.store.radius(i));
+    if (mixture) rows.component.push_back(scene::component_of(rows.store.substance(i).code));
     rows.layer.push_back(particle.layer);
     rows.contacts.push_back(particle.contacts);
   }
@@ -70,13 +72,16 @@ void show_contacts(Packing::Rows& rows) {
   rows.walls = spans_of(rows.wall_arrays);
 }
 
-std::vector<ParticleRow> particles_of(const particles::Store& store, const std::vector<std::int32_t>& layer,
+std::vector<ParticleRow> particles_of(const particles::Store& store, const std::vector<std::int32_t>& layers,
                                       const std::vector<std::int32_t>& contacts) {
-  const auto used = static_cast<std::size_t>(store.layout().used_doubles());
+  const particles::Layout& layout = store.layout();
   std::vector<ParticleRow> particles(static_cast<std::size_t>(store.owned()));
   for (std::size_t k = 0; k < particles.size(); ++k) {
-    particles[k] = {.id = store.ids()[k], .record = {}, .layer = layer[k], .contacts = contacts[k]};
-    std::copy_n(store.record(static_cast<LocalIndex>(k)), used, particles[k].record.begin());
+    particles[k] = {.id = store.ids()[k], .record = {}, .layer = layers[k], .contacts = contacts[k]};
+    const double* record = store.record(static_cast<LocalIndex>(k));
+    double* to = particles[k].record.data();
+    std::copy_n(record, layout.used_doubles(), to);
+    if (layout.component >= 0) std::copy_n(record + layout.component, 2, to + layout.component);
   }
   std::ranges::sort(particles, {}, &ParticleRow::id);
   return particles;
@@ -107,6 +112,7 @@ std::span<const double> Packing::radius() const noexcept { return rows_->radius;
 std::span<const double> Packing::velocity() const noexcept { return rows_->velocity; }
 std::span<const double> Packing::spin() const noexcept { return rows_->spin; }
 std::span<const std::int32_t> Packing::layer() const noexcept { return rows_->layer; }
+std::span<const std::int32_t> Packing::component() const noexcept { return rows_->component; }
 std::span<const std::int32_t> Packing::contacts() const noexcept { return rows_->contacts; }
 const ContactSpans& Packing::pair_contacts() const noexcept { return rows_->pairs; }
 const ContactSpans& Packing::wall_contacts() const noexcept { return rows_->walls; }

@@ -29,7 +29,7 @@ struct Packing::Rows {
   particles::Store store;
   std::vector<std::int64_t> id;
   std::vector<double> position, radius, velocity, spin;
-  std::vector<std::int32_t> layer, contacts;
+  std::vector<std::int32_t> layer, contacts, component;
   std::vector<observe::ContactForce> pair_rows, wall_rows;
   ContactArrays pair_arrays, wall_arrays;
   ContactSpans pairs, walls;

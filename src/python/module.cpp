@@ -73,6 +73,7 @@ void define_packing(py::module_& module) {
                              })
       .def_property_readonly("layer", [of](const py::object& self) { return view(self, of(self).layer(), 1); })
       .def_property_readonly("contacts", [of](const py::object& self) { return view(self, of(self).contacts(), 1); })
+      .def_property_readonly("component", [of](const py::object& self) { return view(self, of(self).component(), 1); })
       .def_property_readonly(
           "pair_contacts",
           [of](const py::object& self) { return contact_views(self, of(self).pair_contacts(), false); })

@@ -73,6 +73,7 @@ void expect_as_in_file(const Packing& all, const std::string& path) {
   EXPECT_THAT(all.radius(), ElementsAreArray(file.radius));
   EXPECT_THAT(all.layer(), ElementsAreArray(file.layer));
   EXPECT_THAT(all.contacts(), ElementsAreArray(file.contacts));
+  EXPECT_THAT(all.component(), ElementsAreArray(file.component));
 }
 
 TEST_F(Packings, AreToTheBitWhatTheProgramWrites) {
@@ -104,6 +105,27 @@ TEST_F(Packings, AreUnderTheLidOfTheProgram) {
   const Packing in_memory = make_packing(pressed, MPI_COMM_WORLD).gathered(MPI_COMM_WORLD);
   (void)make_packing(pressed, MPI_COMM_WORLD, {.folder = folder_});
   if (comm_.rank() == 0) expect_as_in_file(in_memory, folder_ + "/pressed.hdf");
+}
+
+// Of several components each particle has its own, in a share, gathered and in files.
+TEST_F(Packings, HaveTheComponentsOfTheProgram) {
+  const std::string two = std::string(text) +
+                          "[mixture]\nshare_by = \"mass\"\n"
+                          "[[component]]\nname = \"heavy\"\nshare = 1.0\ndensity = 3000.0\n"
+                          "radius = { distribution = \"equal\", value = 0.012 }\n"
+                          "[[component]]\nname = \"light\"\nshare = 2.0\n";
+  const Scene scene = Scene::from_text(two, "two.toml", {});
+  const Packing share = make_packing(scene, MPI_COMM_WORLD);
+  const Packing all = share.gathered(MPI_COMM_WORLD);
+  (void)make_packing(scene, MPI_COMM_WORLD, {.folder = folder_});
+  share.write(MPI_COMM_WORLD, folder_ + "/share.hdf");
+  all.write(MPI_COMM_WORLD, folder_ + "/all.hdf");
+  EXPECT_EQ(std::ssize(share.component()), share.count());
+  if (comm_.rank() != 0) return;
+  for (const char* file : {"/two.hdf", "/share.hdf", "/all.hdf"}) expect_as_in_file(all, folder_ + file);
+  EXPECT_GT(std::ranges::count(all.component(), 0), 3);
+  EXPECT_GT(std::ranges::count(all.component(), 1), 3);
+  for (std::size_t k = 0; k < all.component().size(); ++k) EXPECT_EQ(all.component()[k] == 0, all.radius()[k] == 0.012);
 }
 
 TEST_F(Packings, SpansStayWhereTheyAre) {

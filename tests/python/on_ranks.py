@@ -1,4 +1,7 @@
 """On all ranks of mpirun, in the folder where the program has made bed.hdf of bed.toml: shares, gathered, on a part of the ranks."""
+import tomllib
+from pathlib import Path
+
 import numpy as np
 
 import packmpi
@@ -9,7 +12,7 @@ try:
 except ImportError:
     MPI = None
 
-NAMES = ("id", "position", "radius", "velocity", "spin", "layer", "contacts")
+NAMES = ("id", "position", "radius", "velocity", "spin", "layer", "contacts", "component")
 
 
 def expect_same(pack, other):
@@ -39,6 +42,23 @@ def on_a_part(rank, ranks, made):
     other = packmpi.run(packmpi.scene("bed.toml", seed=10 + (rank == ranks - 1)), part)
     assert other.provenance["ranks"] == part.size
     part.Free()
+
+
+def of_components(rank):
+    """A mixture in memory has the component of each particle, as its file has."""
+    keys = tomllib.loads(Path("bed.toml").read_text()) | {"mixture": {"share_by": "mass"}, "component": [
+        {"name": "heavy", "share": 1.0, "density": 3000.0, "radius": {"distribution": "equal", "value": 0.012}},
+        {"name": "light", "share": 2.0}]}
+    two = packmpi.scene(keys, name="two")
+    share = packmpi.run(two)
+    assert share.components == ["heavy", "light"] and len(share.component) == share.count
+    np.testing.assert_array_equal(share.component == 0, share.radius == 0.012)
+    whole = share.gathered()
+    share.save("two.hdf", force=True)
+    filed = packmpi.read("two.hdf")
+    if rank == 0:
+        expect_same(whole, filed)
+    assert filed.components == share.components and 0 < filed.component.sum() < filed.count
 
 
 def main():
@@ -77,6 +97,7 @@ def main():
     else:
         raise AssertionError("nothing ended the run")
     assert failing(lambda: packmpi.run({"container": {"siez": [1, 1, 1]}})).key == "container.siez"
+    of_components(rank)
     if MPI is not None:
         on_a_part(rank, ranks, made)
         expect_same(packmpi.run("bed.toml", MPI.COMM_SELF), made)

@@ -71,8 +71,8 @@ class Pack:
     spin            (N, 3) [rad/s], or None without rotation; in 2D only z is not zero
     layer           (N): layer of insertion, from 0
     contacts        (N): touching particles
-    component       (N): number of the component, from 0; zeros with one, and in memory
-    components      names of the components; empty with one, and in memory
+    component       (N): number of the component, from 0; zeros with one
+    components      names of the components; empty with one
     pairs, forces   (M, 2) ids and (M, 3) forces on the first [N], or None if the pack was written without contacts
     pair_contacts, wall_contacts    all that the pack has of contacts, by name: pair or particle and wall, overlap, normal, force, and the
                     displacements that they remember; empty dictionaries without contacts, or of a pack that was made before there were any.
@@ -118,6 +118,8 @@ class Pack:
         pack.pairs, pack.forces = pack.pair_contacts["pair"], pack.pair_contacts["force"]
         summary = json.loads(made.summary)
         pack._tell({**summary["target"], **summary["achieved"]}, summary["audit"], summary["provenance"])
+        if pack.components:
+            pack.component = made.component
         pack.rest = {name: one["value"] for name, one in summary["rest"].items()}
         pack.rest |= {f"{name}_limit": one["limit"] for name, one in summary["rest"].items()}
         pack.rest["missed"] = "\n".join(summary["missed"])
@@ -127,8 +129,10 @@ class Pack:
 
     def _tell(self, summary: dict[str, Any], audit: dict[str, Any], provenance: dict[str, Any]) -> None:
         self.summary, self.audit, self.provenance = summary, audit, provenance
+        scene = provenance.get("effective_input", "")
+        components = tomllib.loads(scene).get("component", []) if "[[component]]" in scene else []
+        self.components: list[str] = [one["name"] for one in components]
         self.component: Integers = np.zeros_like(self.layer)
-        self.components: list[str] = []
         self.size: Floats = np.array(summary["size"], dtype=float)
         self.lid: Optional[float] = summary.get("lid")
         if self.lid is not None:
@@ -153,7 +157,6 @@ class Pack:
         self._tell(attributes(file["summary"]), attributes(file["summary/audit"]), attributes(file["provenance"]))
         if "component" in particles:
             self.component = particles["component"][:]
-            self.components = [one["name"] for one in tomllib.loads(self.provenance["effective_input"]).get("component", [])]
         self.rest = attributes(file["summary/rest"]) if "summary/rest" in file else {}
         self.layers: dict[str, list[Any]] = {present(name): [plain(value) for value in data[:].tolist()]
                                              for name, data in file["summary/layers"].items()}
