@@ -11,6 +11,7 @@
 #include "input/keys.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
+#include "tables/known_names.hpp"
 
 namespace packmpi::input {
 
@@ -53,11 +54,13 @@ std::vector<Node> tables_at(Document& document, std::string_view name) {
 void refuse_unknown_in(const Node& table, std::string_view what, std::span<const std::string_view> names) {
   for (const Entry& item : table_of(table)) {
     if (is_in(names, item.name)) continue;
-    const std::vector<std::string> known(names.begin(), names.end());
-    const auto near = text::closest(item.name, known);
-    fail(item.node.place, fmt::format("{}.{}", what, toml_string(item.name)),
-         fmt::format("unknown key; {}", near ? fmt::format("did you mean \"{}\"?", *near)
-                                             : fmt::format("[[{}]] has {}", what, joined(names, "and"))));
+    std::optional<std::string> words = tables::known_elsewhere(what, item.name);
+    if (!words) {
+      const auto near = text::closest(item.name, std::vector<std::string>(names.begin(), names.end()));
+      words =
+          near ? fmt::format("did you mean \"{}\"?", *near) : fmt::format("[[{}]] has {}", what, joined(names, "and"));
+    }
+    fail(item.node.place, fmt::format("{}.{}", what, toml_string(item.name)), fmt::format("unknown key; {}", *words));
   }
 }
 
@@ -256,7 +259,8 @@ void check_mixture(const MixtureTables& tables, const Document& document, const 
   if (in.layers.region == RegionRule::container)
     refuse("layers.region", "\"container\" thins out the last layers, which would spoil the shares; use \"open\"");
   if (insertion_alone(in) && !in.strata.empty())
-    refuse("stratum", "strata are laid by layers that settle; give layers.duration, or remove them");
+    fail(tables.strata.front().place, "stratum",
+         "strata are laid by layers that settle; give layers.duration, or remove them");
   const bool all =
       !in.strata.empty() && std::ranges::all_of(in.strata, [](const Stratum& s) { return !s.shares.empty(); });
   double sum = 0.0;

@@ -19,6 +19,10 @@ constexpr std::string_view spheres_alone =
 constexpr std::string_view hertz =
     "contacts are Hertz', whose stiffness follows from particles.youngs_modulus and particles.poisson_ratio";
 constexpr std::string_view stress = "a stress is asked for by [confinement]";
+constexpr std::string_view materials =
+    "several materials are [[component]] tables, one each, with name, share and what differs (doc/howto_mixture.md)";
+constexpr std::string_view strata =
+    "parts of the bed by height or by mass are [[stratum]] tables, from below (doc/howto_strata.md)";
 constexpr std::string_view shaking =
     "not in this version; a denser bed is asked for by [target], which fills it in with less friction";
 
@@ -40,6 +44,11 @@ constexpr std::array all{
     Known{"aspect_ratio", "", spheres_alone},
     Known{"stiffness", "", hertz},
     Known{"restitution", "", "give contact.restitution, one number at any speed"},
+    Known{"component", "", materials},
+    Known{"mixture", "", materials},
+    Known{"material", "", materials},
+    Known{"species", "", materials},
+    Known{"strat", "", strata},
     Known{"pressure", "confinement", stress},
     Known{"servo", "confinement", stress},
     Known{"piston", "confinement", stress},
