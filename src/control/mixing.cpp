@@ -1,6 +1,5 @@
 #include "control/mixing.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "scene/expectation.hpp"
@@ -9,8 +8,9 @@
 namespace packmpi::control {
 namespace {
 
-// A stratum by height is complete at half a mean diameter, and after so many layers that were cut to its rest.
-constexpr double near_enough = 0.5;
+// A stratum by height is complete if less than this of a mean diameter is missing, and after so many layers that were
+// cut to its rest.
+constexpr double near_enough = 0.25;
 constexpr std::int64_t most_cuts = 5;
 // One by mass, when so small a part of it is left: its last layer was cut to it.
 constexpr double rounding = 1e-9;
@@ -21,7 +21,7 @@ double extent_of_mass(const scene::Recipe& recipe, double mass) {
 }
 
 // What is left of stratum k; not above zero: it is complete.
-double left(const scene::Scene& scene, std::size_t k, double surface, const Mixing& mixing) {
+double left(const scene::Scene& scene, std::size_t k, double fraction, const Mixing& mixing) {
   const input::Stratum& stratum = scene.in.strata[k];
   const scene::Recipe recipe = scene::recipe_of(scene, k);
   if (stratum.mass) {
@@ -29,13 +29,11 @@ double left(const scene::Scene& scene, std::size_t k, double surface, const Mixi
     const double rest = whole - mixing.stratum_extent;
     return rest > rounding * whole ? rest : 0.0;
   }
-  const double diameter = 2.0 * scene.sizes.mean();
-  const double missing = *stratum.top - surface;
-  if (missing < near_enough * diameter || mixing.stratum_layers >= most_cuts) return 0.0;
-  constexpr double deep = 4.0;  // diameters from which on the bed's own density is better than the expected
-  const double bed = mixing.extent / scene.container.floor_area() / std::fmax(surface, diameter);
-  const double fraction = surface > deep * diameter ? bed : scene::expected_fraction(scene).value;
-  return missing * scene.container.floor_area() * fraction;
+  const double a_metre =
+      scene.container.floor_area() * (fraction > 0.0 ? fraction : scene::expected_fraction(scene).value);
+  const double missing = *stratum.top * a_metre - mixing.extent;
+  const bool complete = missing < near_enough * 2.0 * scene.sizes.mean() * a_metre;
+  return complete || mixing.stratum_layers >= most_cuts ? 0.0 : missing;
 }
 
 }  // namespace
@@ -53,14 +51,14 @@ Mixing begin_mixing(const scene::Scene& scene) {
 
 bool by_mass(const scene::Scene& scene) { return !scene.in.strata.empty() && scene.in.strata.front().mass.has_value(); }
 
-double room_in_stratum(const scene::Scene& scene, double surface, Mixing& mixing) {
+double room_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const std::vector<input::Stratum>& strata = scene.in.strata;
   for (;;) {
     const auto k = static_cast<std::size_t>(mixing.stratum);
     const bool last = k + 1 >= strata.size();
     if (strata.empty() || (last && !strata[k].mass)) return endless;
-    const double rest = left(scene, k, surface, mixing);
+    const double rest = left(scene, k, fraction, mixing);
     if (rest > 0.0 || last) return rest;
     ++mixing.stratum;
     mixing.stratum_extent = 0.0;

@@ -27,8 +27,10 @@ struct Mixing {
 [[nodiscard]] Mixing begin_mixing(const scene::Scene& scene);
 
 /// [m3] (2D: m2) what the next layer may have at most so that the stratum, which it goes on to the next of where this
-/// one is complete, ends where it is to; infinite where the end of the bed ends it. `surface`: of the bed [m]. Pure.
-[[nodiscard]] double room_in_stratum(const scene::Scene& scene, double surface, Mixing& mixing);
+/// one is complete, ends where it is to; infinite where the end of the bed ends it. `fraction`: what the bed's solid
+/// fraction is; 0: as expected. Heights of strata become solid volumes by it, as the surface of a bed that still moves
+/// says nothing of the finished pack. Pure.
+[[nodiscard]] double room_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing);
 
 /// Whether strata end with masses, and the last one has not got its own yet. Pure.
 [[nodiscard]] bool wants_mass(const scene::Scene& scene, const Mixing& mixing);

@@ -18,6 +18,10 @@ std::int64_t volume_units(const scene::Scene& scene, double radius) {
   return std::llround(geometry::volume(3, radius) / scene::volume_unit(scene));
 }
 
+std::int64_t cut_units(const scene::Scene& scene, double radius, double centre, double height) {
+  return std::llround(geometry::volume_below(3, radius, centre, height) / scene::volume_unit(scene));
+}
+
 // Sums by component and by slab of height.
 struct Heights {
   Heights(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, double width, double top)
@@ -121,9 +125,18 @@ void add_boundaries(const comm::Comm& comm, const particles::Store& store, const
   std::vector<std::int64_t> units(bins * strata, 0);
   const auto up = static_cast<std::size_t>(scene.container.vertical());
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const double at = std::clamp(std::floor(store.position(i)[up] / width), 0.0, static_cast<double>(bins - 1));
+    const double r = store.radius(i), z = store.position(i)[up];
     const auto of = static_cast<std::size_t>(stratum[static_cast<std::size_t>(i)]);
-    units[static_cast<std::size_t>(at) * strata + of] += volume_units(scene, store.radius(i));
+    const auto lowest =
+        static_cast<std::size_t>(std::clamp(std::floor((z - r) / width), 0.0, static_cast<double>(bins - 1)));
+    std::int64_t below = 0;
+    const std::int64_t whole = volume_units(scene, r);
+    for (std::size_t bin = lowest; below < whole; ++bin) {
+      const double edge = static_cast<double>(bin + 1) * width;
+      const std::int64_t to = bin + 1 < bins && edge < z + r ? cut_units(scene, r, z, edge) : whole;
+      units[bin * strata + of] += to - below;
+      below = to;
+    }
   }
   comm.sum(std::span(units));
   for (std::size_t k = 0; k + 1 < strata; ++k) {

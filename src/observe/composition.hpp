@@ -25,7 +25,7 @@ struct ComponentPart {
 struct StratumBoundary {
   std::string below, above;
   double wanted = 0.0;  ///< [m] where it was to be; 0: strata are by mass
-  double height = 0.0;  ///< [m] below it there is as much solid as there is of all strata below
+  double height = 0.0;  ///< [m] below it there is as much solid, spheres cut, as there is of all strata below
   double mixed = 0.0;   ///< [m] depth of solid of each side that lies on the other
 };
 

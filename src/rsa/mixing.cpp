@@ -56,10 +56,10 @@ Portion portion_by_volume(const comm::Comm& comm, const scene::Scene& scene, int
 
 }  // namespace
 
-void plan_layer(const comm::Comm& comm, const scene::Scene& scene, double surface, control::Mixing& mixing,
+void plan_layer(const comm::Comm& comm, const scene::Scene& scene, double fraction, control::Mixing& mixing,
                 LayerRegion& region) {
   const double whole = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
-  const double room = control::room_in_stratum(scene, surface, mixing);
+  const double room = control::room_in_stratum(scene, fraction, mixing);
   const double extent = std::min(whole, room);
   const scene::Recipe recipe = scene::recipe_of(scene, static_cast<std::size_t>(mixing.stratum));
   const double particles = extent / recipe.mean_extent;

@@ -18,13 +18,22 @@
 namespace packmpi::run {
 namespace {
 
+// Solid fraction of the buried part of a bed that has come to rest; else 0. Collective.
+double settled_fraction(const Bed& bed) {
+  constexpr double at_rest = 1e-2;  // of m g d
+  const pack::Progress& at = bed.progress;
+  if (at.layers.empty() || !(at.layers.back().kinetic_per_mgd < at_rest)) return 0.0;
+  const control::Slab slab = control::buried(bed.surface(), 2.0 * bed.scene.sizes.mean());
+  return slab.depth() > 0.0 ? bed.fraction_of(slab) : 0.0;
+}
+
 void insert_layer(Bed& bed, Attendant& attendant) {
   const scene::Scene& scene = bed.scene;
   pack::Progress& at = bed.progress;
   bed.store.set_ghosts(0);
   rsa::LayerRegion region = bed.next_region();
   control::Mixing mixing = at.mixing;
-  if (scene.features.mixture) rsa::plan_layer(bed.comm, scene, bed.surface(), mixing, region);
+  if (scene.features.mixture) rsa::plan_layer(bed.comm, scene, settled_fraction(bed), mixing, region);
   const LocalIndex before = bed.store.owned();
   const auto look = [&] { attendant.look_while_inserting(before); };
   const Stopwatch watch;
