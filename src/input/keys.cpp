@@ -337,9 +337,9 @@ Place at_start(std::string Start::*member) {
 std::vector<Key> start_keys() {
   return {
     when(started, word("start.pack", at_start(&Start::pack), mandatory,
-         "A pack (NAME.hdf) to go on from, its path from the scene's folder: its particles are there before the first layer. See doc/going_on.md.")),
+         "A pack (NAME.hdf), CSV or LAMMPS data file to go on from, its path from the scene's folder: its particles are there before the first layer. See doc/going_on.md.")),
     when(started, word("start.digest", at_start(&Start::digest), R"("")",
-         "Digest of that pack; another one is refused. A run fills it in.")),
+         "Digest of that file; another one is refused. A run fills it in.")),
     when(started, real("start.overlap_limit", [](Input& in) -> Slot { return &in.start->overlap; }, ratio, Range{0, 0.5, true, false}, "0.05",
          "Deepest overlap in it, over the smaller radius, that is taken: the final stage relaxes it. Deeper ones are refused.")),
   };

@@ -14,12 +14,4 @@ namespace packmpi::run {
 /// Error(io_failure) if it is damaged. Cost: one reading of the pack, shared by the ranks.
 void take_over(Bed& bed);
 
-/// What was taken over and what was not, "" if nothing was. Local.
-[[nodiscard]] std::string taken_words(const scene::Scene& scene, const pack::Progress& progress);
-
-/// Was this layer taken over? Its reason to stop says so.
-[[nodiscard]] bool is_taken_over(const report::LayerRow& row);
-/// Do contacts that were taken over lack what they should remember? Then rest cannot be judged before they bear again.
-[[nodiscard]] bool lacks_springs(const scene::Scene& scene, const pack::Progress& progress);
-
 }  // namespace packmpi::run

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.hpp"
@@ -13,6 +14,10 @@
 
 namespace packmpi::source {
 namespace {
+
+std::uint64_t digest_of(const std::string& path) {
+  return kind_of(path) == Kind::pack ? pack::seal_of(path) : digest_of_text(path);
+}
 
 // Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
 void check_sides(const scene::Scene& scene, const confine::State& source) {
@@ -45,7 +50,7 @@ input::Input with_start(const comm::Comm& comm, input::Input in) {
   if (!in.start) return in;
   std::string digest;
   comm::agree_on(comm, [&] {
-    if (comm.rank() == 0) digest = report::hexadecimal(pack::seal_of(path_of(in)));
+    if (comm.rank() == 0) digest = report::hexadecimal(digest_of(path_of(in)));
   });
   digest = comm.broadcast(0, digest);
   if (!in.start->digest.empty() && in.start->digest != digest) {
@@ -62,6 +67,27 @@ void check_fit(const scene::Scene& scene, const input::Input& made, const pack::
   if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
   check_sides(scene, slice.confined);
   for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
+}
+
+void fit_rows(const scene::Scene& scene, TextRows& found) {
+  constexpr double same = 1e-6;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
+    if (!scene.container.periodic[axis]) continue;
+    const double size = scene.container.size[axis];
+    const std::array<double, 2> range = found.box ? (*found.box)[axis] : std::array{0.0, size};
+    if (!(std::abs(range[1] - range[0] - size) < same * size)) {
+      refuse(scene, fmt::format("start.pack: its box is {:g} m along {}, which is periodic, and the container {:g} m; "
+                                "give container.size that of the box",
+                                range[1] - range[0], "xy"[axis], size));
+    }
+    for (Vec3& position : found.rows.position) {
+      double& at = position[axis];
+      at -= range[0];
+      if (at < 0.0 || at >= size) at -= size * std::floor(at / size);
+      if (!(at < size)) at = 0.0;
+    }
+  }
+  for (const double radius : found.rows.radius) check_radii(scene, radius, radius);
 }
 
 bool feels_anew(const input::Input& made, const scene::Scene& scene) {

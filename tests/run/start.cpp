@@ -196,8 +196,7 @@ TEST_F(Start, WhatDoesNotFitIsRefused) {
                 "its radii are 0.02 to 0.02 m, those of the scene 0.019 to 0.019 m; give particles.radius a range "
                 "that has both");
   EXPECT_THAT(complaint({"start.overlap_limit=1e-9"}),
-              HasSubstr(", beyond start.overlap_limit = 1e-09; raise that, or give a pack "
-                        "that is at rest"));
+              HasSubstr("; start.overlap_limit is 1e-09: raise that, or give a pack that is at rest"));
   EXPECT_THAT(complaint({"start.digest=0123456789abcdef"}),
               HasSubstr(": start.digest: is 0123456789abcdef, and base.hdf has "));
   EXPECT_THROW((void)go_on({"start.pack=no.hdf"}), Error);
