@@ -100,6 +100,8 @@ def check_pack(path, table, absent):
 
 def check_json(path, table, page):
     summary = json.loads(path.read_text())
+    expect(("composition" in summary) == (path.stem == "components"), f"{path.name}: composition is of several components")
+    summary.pop("composition", None)
     names = {part: {name.split("@")[1] for name in table if name.startswith(f"/{group}/@")}
              for part, group in (("summary", "summary"), ("audit", "summary/audit"), ("provenance", "provenance"))}
     expect(set(summary) == {"format", "format_version", "target", "achieved", "sizes", "audit", "rest", "missed", "layers", "counters", "costs",
@@ -139,21 +141,23 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     rolling, memory = "contact.rolling_friction=0.1", 'contact.tangential="mindlin"'
     springs = [f"/{group}/{kind}_displacement" for group in ("contacts", "wall_contacts") for kind in ("tangential", "rolling", "twisting")]
-    cases = {"all": (["output.contacts=true", memory, rolling], ("/none",)),
-             "sliding": (["output.contacts=true", 'contact.tangential="sliding"'], tuple(springs)),
-             "bare": (["output.contacts=false", "dynamics.rotation=false"],
-                      ("/contacts", "/wall_contacts", "/particles/spin", "/VTKHDF/PointData/spin"))}
-    for case, (sets, absent) in cases.items():
+    graded, mixed = root / "input" / "graded_uniform.toml", root / "tests" / "scenes" / "components.toml"
+    alone = ("/particles/component", "/VTKHDF/PointData/component")
+    cases = {"all": (graded, ["output.contacts=true", memory, rolling], alone),
+             "sliding": (graded, ["output.contacts=true", 'contact.tangential="sliding"'], (*springs, *alone)),
+             "bare": (graded, ["output.contacts=false", "dynamics.rotation=false"],
+                      ("/contacts", "/wall_contacts", "/particles/spin", "/VTKHDF/PointData/spin", *alone)),
+             "components": (mixed, ["output.contacts=false"], ("/contacts", "/wall_contacts"))}
+    for case, (scene, sets, absent) in cases.items():
         arguments = [word for one in sets for word in ("--set", one)]
-        scene = str(root / "input" / "graded_uniform.toml")
-        command = [*program, scene, *SMALL, *arguments, "-o", str(folder / case)]
+        command = [*program, str(scene), *SMALL, *arguments, "-o", str(folder / case)]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 3:
             sys.exit(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
-        check_pack(folder / case / "graded_uniform.hdf", table, absent)
-        check_json(folder / case / "graded_uniform.json", table, page)
-        check_steps(folder / case / "graded_uniform.steps.csv", page)
-        expect((folder / case / "graded_uniform.log").exists(), "there is no log")
+        check_pack(folder / case / f"{scene.stem}.hdf", table, absent)
+        check_json(folder / case / f"{scene.stem}.json", table, page)
+        check_steps(folder / case / f"{scene.stem}.steps.csv", page)
+        expect((folder / case / f"{scene.stem}.log").exists(), "there is no log")
     print("\n".join(problems) or f"{len(table)} names compared")
     return 1 if problems else 0
 
