@@ -72,11 +72,11 @@ void add_mixture(const scene::Scene& scene, double softer, Law& law) {
   law.pair = law.wall = made(scene::pair_material(in, 0, 0));
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b < count; ++b) {
-      const auto at = static_cast<std::size_t>(scene::code_of(a) + scene::code_of(b));
-      raise(law.pair, tables->at(at) = made(scene::pair_material(in, a, b)));
+      const int code = scene::code_of(a) + scene::code_of(b);
+      raise(law.pair, tables->at(static_cast<std::size_t>(code)) = made(scene::pair_material(in, a, b)));
     }
-    const auto at = static_cast<std::size_t>(scene::pair_codes + scene::code_of(a));
-    raise(law.wall, tables->at(at) = made(scene::wall_material(in, a)));
+    const int code = scene::pair_codes + scene::code_of(a);
+    raise(law.wall, tables->at(static_cast<std::size_t>(code)) = made(scene::wall_material(in, a)));
   }
   law.pair_table = tables->data();
   law.wall_table = tables->data() + scene::pair_codes;

@@ -273,8 +273,7 @@ std::vector<double> SizeCurve::corners() const {
     radii.insert(radii.end(), own.begin(), own.end());
   }
   std::ranges::sort(radii);
-  const auto twice = std::ranges::unique(radii);
-  radii.erase(twice.begin(), twice.end());
+  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
   for (const Piece& piece : pieces_) {
     for (const double r : {piece.low, piece.high}) {
       if (radii.empty() || r > radii.back()) radii.push_back(r);

@@ -27,8 +27,9 @@ struct Table {
   std::size_t cells = 0, other = 0;  // columns; those that nobody wants
 
   [[nodiscard]] bool has(Column first, int count) const {
-    for (int k = 0; k < count; ++k) {
-      if (of[static_cast<std::size_t>(first + k)].cell < 0) return false;
+    const int end = first + count;
+    for (int column = first; column < end; ++column) {
+      if (of[static_cast<std::size_t>(column)].cell < 0) return false;
     }
     return true;
   }
