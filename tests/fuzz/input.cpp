@@ -90,6 +90,8 @@ bool is_rewritten(const std::string& key) {
 /// Every value of the document is a key's, and the effective input has it.
 void check_nothing_is_passed_over(const document::Table& table, const std::string& path,
                                   const document::Document& effective) {
+  // Of several components [particles] is what those have that say nothing else: tests/input has their effective input.
+  if (path.empty() && std::ranges::any_of(table, [](const auto& entry) { return entry.name == "component"; })) return;
   for (const document::Entry& entry : table) {
     const std::string here = (path.empty() ? "" : path + ".") + entry.name;
     if (here == "particles.diameter") continue;  // stands under radius, halved
