@@ -11,7 +11,7 @@ program=${BUILD:-$(dirname "$here")/build}/packmpi
 if [[ -e $program ]]; then
   say "bringing $program up to date"
 else
-  say "building $program, once: three to four minutes on two cores"
+  say "building $program, once: five to six minutes on two cores"
 fi
 "$here/build.sh"
 "$here/python_path.sh"

@@ -64,7 +64,7 @@ void warn_of_length(const scene::Scene& scene, Warnings& warnings) {
     instead = fmt::format("layers.duration = {:.2g} ({:g} falls)", enough_falls * fall, enough_falls);
     left *= enough_falls / falls;
   }
-  if (softer * worth < modulus) {
+  if (!scene.features.mixture && softer * worth < modulus) {  // components have moduli of their own
     why += fmt::format(
         "{}particles.youngs_modulus = {:.3g} Pa asks for steps of {:.2g} s, for overlaps of {:.2g} radii",
         why.empty() ? "" : " and ", modulus, scene.settling.time_step, scene::expected_overlap(scene, modulus));

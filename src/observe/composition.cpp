@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.hpp"
 #include "scene/mixture.hpp"
 
 namespace packmpi::observe {
@@ -14,12 +15,8 @@ std::size_t component_at(const particles::Store& store, LocalIndex i) {
   return static_cast<std::size_t>(scene::component_of(store.substance(i).code));
 }
 
-std::int64_t volume_units(const scene::Scene& scene, double radius) {
-  return std::llround(geometry::volume(3, radius) / scene::volume_unit(scene));
-}
-
 std::int64_t cut_units(const scene::Scene& scene, double radius, double centre, double height) {
-  return std::llround(geometry::volume_below(3, radius, centre, height) / scene::volume_unit(scene));
+  return std::llrint(geometry::volume_below(3, radius, centre, height) / scene::volume_unit(scene));
 }
 
 // Sums by component and by slab of height.
@@ -30,7 +27,8 @@ struct Heights {
     units.assign(slabs * components, 0);
     for (LocalIndex i = 0; i < store.owned(); ++i) {
       const double at = std::clamp(std::floor(store.position(i)[up] / width), 0.0, static_cast<double>(slabs - 1));
-      units[static_cast<std::size_t>(at) * components + component_at(store, i)] += volume_units(scene, store.radius(i));
+      units[static_cast<std::size_t>(at) * components + component_at(store, i)] +=
+          scene::volume_units(scene, store.radius(i));
     }
     comm.sum(std::span(units));
   }
@@ -49,7 +47,7 @@ void add_parts(const comm::Comm& comm, const particles::Store& store, const scen
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const std::size_t c = component_at(store, i);
     ++sums[c];
-    sums[components + c] += volume_units(scene, store.radius(i));
+    sums[components + c] += scene::volume_units(scene, store.radius(i));
   }
   comm.sum(std::span(sums));
   for (std::size_t c = 0; c < components; ++c) {
@@ -82,7 +80,7 @@ void add_lacey(const comm::Comm& comm, const particles::Store& store, const scen
   double whole = depth;
   for (std::size_t a = 0; a < up; ++a) whole *= scene.container.size[a];
   const double cells = whole / wanted;
-  const double side = up == 2 ? std::cbrt(cells) : std::sqrt(cells);
+  const double side = up == 2 ? elementary::cube_root(cells) : std::sqrt(cells);
   std::array<std::size_t, 3> counts{1, 1, 1};
   std::array<double, 3> widths{1.0, 1.0, 1.0};
   for (std::size_t a = 0; a <= up; ++a) {
@@ -130,7 +128,7 @@ void add_boundaries(const comm::Comm& comm, const particles::Store& store, const
     const auto lowest =
         static_cast<std::size_t>(std::clamp(std::floor((z - r) / width), 0.0, static_cast<double>(bins - 1)));
     std::int64_t below = 0;
-    const std::int64_t whole = volume_units(scene, r);
+    const std::int64_t whole = scene::volume_units(scene, r);
     for (std::size_t bin = lowest; below < whole; ++bin) {
       const double edge = static_cast<double>(bin + 1) * width;
       const std::int64_t to = bin + 1 < bins && edge < z + r ? cut_units(scene, r, z, edge) : whole;

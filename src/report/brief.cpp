@@ -61,7 +61,11 @@ std::string container_words(const RunRecord& r) {
 void say_density(Buffer& out, const RunRecord& r) {
   const double phi = r.insertion_alone ? r.phi : r.phi_bulk;
   std::string asked;
-  if (r.density.on()) asked = fmt::format("; asked {:.4g} +- {:g}", r.density.fraction, r.density.tolerance);
+  if (r.density.on()) {
+    asked = fmt::format("; asked {:.4g} +- {:g}", r.density.fraction, r.density.tolerance);
+    if (r.density_is_before_stress())
+      asked += fmt::format(" before the lid, when it was {:.4f}", r.confined.phi_before);
+  }
   if (r.insertion_alone && r.target_particles == 0) asked = fmt::format("; asked {:.4g}", r.target_fraction);
   say(out, "density", "solid fraction {:.4f}, porosity n {:.4f}, void ratio e {:.4f}{}{}", phi, porosity(phi),
       void_ratio(phi), r.insertion_alone ? "" : " in the bulk", asked);

@@ -81,8 +81,7 @@ void add_rest(const scene::Scene& scene, const RunRecord& record, std::vector<st
 
 void add_density(const RunRecord& record, std::vector<std::string>& missed) {
   const DensityTarget& wanted = record.density;
-  const bool before = record.confined.on && !wanted.confined;
-  const double got = before ? record.confined.phi_before : record.phi_bulk;
+  const double got = record.density_is_before_stress() ? record.confined.phi_before : record.phi_bulk;
   const double off = got - wanted.fraction;
   if (!wanted.on() || std::abs(off) <= wanted.tolerance) return;
   missed.push_back(

@@ -144,6 +144,9 @@ struct RunRecord {
   // what it cost, on rank 0; empty on the others
   std::vector<RankNumbers> counters;  ///< counts: the same in every run on as many ranks
   std::vector<RankNumbers> costs;     ///< times, memory
+
+  /// Whether the density that is ordered is that of the pack before its lid came (target.state = "filled").
+  [[nodiscard]] bool density_is_before_stress() const noexcept { return confined.on && !density.confined; }
 };
 
 /// All that was missed, with `between` between; empty: nothing.

@@ -31,7 +31,7 @@ void list_density(Buffer& out, const RunRecord& r) {
   line(out, "solid fraction below the target height, phi", asked ? number(r.target_fraction) : "", number(r.phi));
   line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
   line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
-  const bool here = r.density.on() && (!r.confined.on || r.density.confined);
+  const bool here = r.density.on() && !r.density_is_before_stress();
   const auto wanted = [&](double (*words)(double)) { return here ? number(words(r.density.fraction)) : std::string(); };
   line(out, "solid fraction in the bulk, phi_bulk", wanted([](double phi) { return phi; }), number(r.phi_bulk));
   line(out, "porosity in the bulk", wanted(porosity), number(porosity(r.phi_bulk)));
@@ -51,7 +51,7 @@ void list_stress(Buffer& out, const RunRecord& r) {
       line(out, fmt::format("stress on the wall {} [Pa]", "xy"[a]), lateral, number(c.on_sides[a]));
   }
   line(out, c.lateral > 0.0 ? "lateral over vertical stress" : "lateral over vertical stress, K0", "", number(c.ratio));
-  const bool wanted = r.density.on() && !r.density.confined;
+  const bool wanted = r.density.on() && r.density_is_before_stress();
   line(out, "solid fraction in the bulk before the lid", wanted ? number(r.density.fraction) : "",
        number(c.phi_before));
 }

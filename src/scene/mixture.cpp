@@ -112,8 +112,12 @@ double volume_unit(const Scene& scene) {
   return std::scalbn(1.0, std::ilogb(geometry::volume(3, scene.sizes.largest())) - 32);
 }
 
+std::int64_t volume_units(const Scene& scene, double radius) {
+  return std::llrint(geometry::volume(3, radius) / volume_unit(scene));
+}
+
 std::int64_t units_of(const Scene& scene, double radius) {
-  return by_number(scene) ? units_a_particle : std::llrint(geometry::volume(3, radius) / volume_unit(scene));
+  return by_number(scene) ? units_a_particle : volume_units(scene, radius);
 }
 
 double radius_of(const Scene& scene, int component, std::uint64_t number) {

@@ -77,7 +77,9 @@ inline constexpr std::int64_t units_a_particle = std::int64_t{1} << 20;
 [[nodiscard]] inline bool by_number(const Scene& scene) { return scene.in.mixture.share_by == "number"; }
 /// [m3] one unit of the exact sums of volume: a power of two, 2^-32 of the largest sphere's volume or less.
 [[nodiscard]] double volume_unit(const Scene& scene);
-/// A particle's own, in units.
+/// Volume [m3] of a particle in those units, the nearest whole number.
+[[nodiscard]] std::int64_t volume_units(const Scene& scene, double radius);
+/// What a particle counts in the mixture's exact sums: its volume, or units_a_particle where shares are by number.
 [[nodiscard]] std::int64_t units_of(const Scene& scene, double radius);
 /// Radius [m] of particle `number` (0 .., over all layers) of a component.
 [[nodiscard]] double radius_of(const Scene& scene, int component, std::uint64_t number);

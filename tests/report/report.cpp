@@ -138,6 +138,21 @@ TEST_F(Report, TableShowsAskedBesideGot) {
   EXPECT_NE(row.substr(0, row.find('\n')).find("0.51235"), std::string::npos) << row;
 }
 
+// Of a pack that was filled to its density and then confined, the density asked for stands beside the one it is for.
+TEST(Lines, SayWhichDensityWasAskedFor) {
+  RunRecord record;
+  record.phi_bulk = 0.6281;
+  record.density.key = "target.solid_fraction";
+  record.density.fraction = 0.62;
+  record.density.tolerance = 0.002;
+  EXPECT_NE(to_lines(record, {}).find("in the bulk; asked 0.62 +- 0.002\n"), std::string::npos);
+  record.confined.on = true;
+  record.confined.phi_before = 0.6198;
+  EXPECT_NE(to_lines(record, {}).find("asked 0.62 +- 0.002 before the lid, when it was 0.6198\n"), std::string::npos);
+  record.density.confined = true;
+  EXPECT_NE(to_lines(record, {}).find("in the bulk; asked 0.62 +- 0.002\n"), std::string::npos);
+}
+
 TEST_F(Report, LinesSayWhatAUserLooksFor) {
   RunRecord record = testing::some_record(3, 2);
   record.missed = {"rest.support: too little", "container.size: too low"};
