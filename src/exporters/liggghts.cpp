@@ -57,9 +57,9 @@ std::string walls(const Specimen& s) {
   std::string text;
   if (s.round()) {
     text = fmt::format(
-        "fix             wall_mantle all wall/gran model hertz tangential ${{tangential}}{1} primitive type 2 "
-        "zcylinder {0} {0} {0}{2}\n",
-        s.radius(), limit(s), rolling(s));
+        "fix             wall_mantle all wall/gran model hertz tangential ${{tangential}}{1} primitive type {2} "
+        "zcylinder {0} {0} {0}{3}\n",
+        s.radius(), rolling(s), type, limit(s));
   }
   for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;

@@ -2,7 +2,7 @@
 """The programs that packs are converted for read them: LAMMPS, LIGGGHTS, YADE, VTK.
 
 usage: convert_programs.py ROOT FOLDER -- mpirun ... packmpi
-A small pack in 3D and one in 2D are converted; each program reads them, runs some steps by the in-file that came with
+A small pack in 3D, one in 2D and one in a cylinder are converted; each program reads them, runs some steps by the in-file that came with
 them, and tells count, volume, mass and largest contact force, which are compared with the pack's own. A program that is
 not installed is passed over; exit code 77 if none is there (scripts/setup.sh --peers).
 """
@@ -21,7 +21,9 @@ except ImportError as error:
     sys.exit(77)
 
 SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.4", "--set", "rest.wait=0", "--set", "output.contacts=true", "--quiet"]
-SCENES = {"quickstart": ["--set", "container.size=[0.3, 0.3, 0.45]"], "paper_5_1": ["--set", "container.size=[0.4, 0.5]"]}
+AS_THE_OTHERS = ["particles.density=1000", "particles.youngs_modulus=1e8", "particles.poisson_ratio=0.25", "contact.damping_ratio=0.1"]
+SCENES = {"quickstart": ["--set", "container.size=[0.3, 0.3, 0.45]"], "paper_5_1": ["--set", "container.size=[0.4, 0.5]"],
+          "pebbles": [word for one in AS_THE_OTHERS for word in ("--set", one)]}
 SAID = re.compile(r"^PACK .*?(\d+) particles, volume (\S+) m3, mass (\S+) kg, largest (?:contact )?force.*? (\S+) N$",
                   re.MULTILINE)
 
@@ -86,7 +88,7 @@ def check_floor(name, pack, here):
     """The floor carries in LAMMPS what it carries in the pack: the force on all without weight, drag and sides."""
     text = (here / f"{name}.lammps.in").read_text()
     vertical = "y" if name == "paper_5_1" else "z"
-    text = re.sub(r"(?m)^fix +(gravity|drag|wall_.) .*\n", "", text)
+    text = re.sub(r"(?m)^fix +(gravity|drag|wall_\w+) .*\n", "", text)
     measure = f"variable push atom f{vertical}\ncompute push all reduce sum v_push\nvariable push_now equal c_push\nthermo_style custom step c_volume c_strongest c_push\n"
     text = text.replace("run             ${steps}", measure + "run ${steps}") + 'print "FLOOR $(v_push_now:%.17g)"\n'
     (here / "floor.in").write_text(text)
