@@ -169,8 +169,9 @@ void declare_convert(CLI::App& app, Request& request) {
       ->type_name("drop|cut");
   app.add_option("--cut", conversion.cut,
                  "take a specimen out: box:length=L,width=W,height=H, cylinder:diameter=D,height=H or "
-                 "sphere:diameter=D, with its middle at x=X,y=Y,z=Z or in that of the pack; particles wholly inside "
-                 "are kept, and its solid fraction is told")
+                 "sphere:diameter=D, with its middle at x=X,y=Y,z=Z or in that of the pack, or a closed surface, "
+                 "FILE.stl:unit=mm or FILE.obj, where the file has it or with its middle at x=X,y=Y,z=Z; particles "
+                 "wholly inside are kept, and its solid fraction is told")
       ->type_name("SHAPE");
   app.add_option_function<std::string>(
          "--replicate", [&conversion](const std::string& text) { read_copies(text, conversion.copies); },

@@ -16,6 +16,7 @@
 #include "exporters/rows_file.hpp"
 #include "exporters/specimen.hpp"
 #include "input/read.hpp"
+#include "mesh/file.hpp"
 #include "pack/pack_file.hpp"
 
 namespace packmpi::exporters {
@@ -167,7 +168,9 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   check_copies(request, scene.container);
   check_components(request, scene);
   check_cut(request);
-  const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene);  // pure, as check_copies() is
+  const std::string file_of_cut = Cut::file_of(request.cut);
+  const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
+  const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene, surface);  // pure, as check_copies() is
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });

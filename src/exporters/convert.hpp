@@ -22,8 +22,8 @@ struct ConvertRequest {
   std::string format;  ///< a name of convert_formats()
   std::string file{};  ///< path of what is written; "": beside the pack, with the format's ending
   Trim trim = Trim::none;
-  std::string
-      cut{};  ///< a specimen inside the pack, "cylinder:diameter=0.15,height=0.3" (doc/vessels.md); "": all of it
+  std::string cut{};  ///< a specimen inside the pack, "cylinder:diameter=0.15,height=0.3" or "part.stl:unit=mm"
+                      ///< (doc/vessels.md); "": all of it
   std::array<int, 2> copies{1, 1};  ///< side by side along x and y; more than one along periodic axes only
   bool force = false;               ///< existing files may be replaced
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -16,12 +16,11 @@
 #include "geometry/cut_volume.hpp"
 #include "geometry/round_volume.hpp"
 #include "geometry/volume.hpp"
+#include "mesh/file.hpp"
 #include "tables/units.hpp"
 
 namespace packmpi::exporters {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse_cut(const std::string& words, const std::string& reason) {
   throw Error(ExitCode::bad_input, fmt::format("--cut {}: {}", words, reason));
@@ -43,8 +42,9 @@ Names names_of(const std::string& words, const std::string& shape, bool flat) {
     refuse_cut(words, fmt::format("a {} is cut out of packs in 3D; of one in 2D a box is", shape));
   }
   const auto near = text::closest(shape, std::vector<std::string>{"box", "cylinder", "sphere"});
-  refuse_cut(words, fmt::format("\"{}\" is no shape; there are box, cylinder and sphere{}", shape,
-                                near ? fmt::format(" (did you mean {}?)", *near) : ""));
+  refuse_cut(words, fmt::format("\"{}\" is no shape; there are box, cylinder, sphere and files that end in .stl or "
+                                ".obj{}",
+                                shape, near ? fmt::format(" (did you mean {}?)", *near) : ""));
 }
 
 double read_metres(const std::string& words, const std::string& name, const std::string& value, bool place) {
@@ -59,14 +59,10 @@ double read_metres(const std::string& words, const std::string& name, const std:
              fmt::format("{} is \"{}\"; give a length{} such as 0.15 or 15cm", name, value, place ? "" : " above 0"));
 }
 
-/// What stands behind the colon, by its names.
-std::map<std::string, double> read_lengths(const std::string& words, const std::string& list, const Names& names,
-                                           bool flat) {
-  std::vector<std::string> known = names.lengths;
-  for (const char* axis : {"x", "y", "z"}) {
-    if (!(flat && *axis == 'z')) known.emplace_back(axis);
-  }
-  std::map<std::string, double> found;
+/// What stands behind the colon, by its names: words.
+std::map<std::string, std::string> read_items(const std::string& words, const std::string& list,
+                                              const std::string& shape, const std::vector<std::string>& known) {
+  std::map<std::string, std::string> found;
   for (std::size_t begin = 0; begin < list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string item = list.substr(begin, end - begin);
@@ -76,21 +72,53 @@ std::map<std::string, double> read_lengths(const std::string& words, const std::
     if (std::ranges::find(known, name) == known.end()) {
       std::string there;
       for (const std::string& one : known) there += (there.empty() ? "" : ", ") + one;
-      refuse_cut(words, fmt::format("a {} has no \"{}\"; there are {}", names.shape, name, there));
+      refuse_cut(words, fmt::format("a {} has no \"{}\"; there are {}", shape, name, there));
     }
-    const std::string value(text::trimmed(equals < item.size() ? item.substr(equals + 1) : ""));
-    if (!found.emplace(name, read_metres(words, name, value, name.size() == 1)).second) {
+    if (!found.emplace(name, text::trimmed(equals < item.size() ? item.substr(equals + 1) : "")).second) {
       refuse_cut(words, fmt::format("{} is there twice", name));
     }
   }
   return found;
 }
 
+std::map<std::string, double> read_lengths(const std::string& words, const std::string& list, const Names& names,
+                                           bool flat) {
+  std::vector<std::string> known = names.lengths;
+  for (const char* axis : {"x", "y", "z"}) {
+    if (!(flat && *axis == 'z')) known.emplace_back(axis);
+  }
+  std::map<std::string, double> found;
+  for (const auto& [name, value] : read_items(words, list, names.shape, known)) {
+    found[name] = read_metres(words, name, value, name.size() == 1);
+  }
+  return found;
+}
+
+/// How long the unit of a file is [m].
+double read_unit(const std::string& words, const std::string& unit) {
+  const tables::Scalar read = tables::parse_scalar("1 " + unit, tables::length);
+  if (read.value) return *read.value;
+  refuse_cut(words, fmt::format("unit is \"{}\"; give one of lengths, such as mm", unit));
+}
+
 }  // namespace
 
-Cut::Cut(const std::string& words, const scene::Scene& scene) : source_(scene.container) {
-  read(words);
+std::string Cut::file_of(const std::string& words) {
+  for (std::size_t end = 4; end <= words.size(); ++end) {
+    if ((end == words.size() || words[end] == ':') && mesh::names_mesh(words.substr(0, end)))
+      return words.substr(0, end);
+  }
+  return "";
+}
+
+Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string& surface) : source_(scene.container) {
+  if (file_of(words).empty()) {
+    read(words);
+  } else {
+    read_surface(words, surface);
+  }
   for (std::size_t a = 0; a < 3; ++a) low_[a] = middle_[a] - 0.5 * size_[a];
+  if (shape_ == Shape::surface) check_corners(words);
   const double slack = 1e-12 * *std::ranges::max_element(source_.size);
   Vec3 room = source_.size;
   if (source_.lid) room[static_cast<std::size_t>(source_.vertical())] = *source_.lid;
@@ -101,7 +129,7 @@ Cut::Cut(const std::string& words, const scene::Scene& scene) : source_(scene.co
                            "smaller or move it",
                            low_[a], low_[a] + size_[a], "xyz"[a], room[a]));
   }
-  if (source_.is_box()) return;
+  if (source_.is_box() || shape_ == Shape::surface) return;
   const double around = source_.radius() + slack;
   const double x = std::abs(middle_[0] - source_.radius()), y = std::abs(middle_[1] - source_.radius());
   const double farthest =
@@ -110,6 +138,43 @@ Cut::Cut(const std::string& words, const scene::Scene& scene) : source_(scene.co
     refuse_cut(words, fmt::format("it reaches {:g} m from the axis of the cylinder, whose radius is {:g} m; make it "
                                   "smaller or move it",
                                   farthest, source_.radius()));
+  }
+}
+
+// The vessel around it is convex: if its corners lie inside, all of it does. Of a box, what is around it will be looked
+// at.
+void Cut::check_corners(const std::string& words) const {
+  const double slack = 1e-12 * *std::ranges::max_element(source_.size);
+  for (const Vec3& point : surface_->shell().points) {
+    const Vec3 x{point[0] + origin_[0], point[1] + origin_[1], point[2] + origin_[2]};
+    if (source_.is_box() || source_.beyond(x) <= slack) continue;
+    refuse_cut(words,
+               fmt::format("its corner at ({:g}, {:g}, {:g}) m lies outside the vessel; make it smaller or move it",
+                           x[0], x[1], x[2]));
+  }
+}
+
+void Cut::read_surface(const std::string& words, const std::string& bytes) {
+  if (source_.dimension == 2) refuse_cut(words, "a surface is cut out of packs in 3D; of one in 2D a box is");
+  shape_ = Shape::surface;
+  const std::string path = file_of(words);
+  file_ = std::filesystem::path(path).filename().string();
+  const auto found =
+      read_items(words, words.substr(std::min(path.size() + 1, words.size())), "surface", {"unit", "x", "y", "z"});
+  const double unit = found.contains("unit") ? read_unit(words, found.at("unit")) : 1.0;
+  try {
+    surface_ = mesh::make_surface(bytes, path, unit);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("--cut {}", error.what()));
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::string axis(1, "xyz"[a]);
+    const double low = surface_->low()[a], high = surface_->high()[a];
+    size_[a] = high - low;
+    if (found.contains(axis)) {
+      origin_[a] = read_metres(words, axis, found.at(axis), true) - 0.5 * (low + high);
+    }
+    middle_[a] = 0.5 * (low + high) + origin_[a];
   }
 }
 
@@ -141,6 +206,9 @@ void Cut::read(const std::string& words) {
 bool Cut::keeps(const Vec3& x, double r) const {
   const Vec3 d{x[0] - middle_[0], x[1] - middle_[1], x[2] - middle_[2]};
   if (shape_ == Shape::none) return true;
+  if (shape_ == Shape::surface) {
+    return surface_->distance({x[0] - origin_[0], x[1] - origin_[1], x[2] - origin_[2]}, r) >= r;
+  }
   if (shape_ == Shape::sphere) return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + r <= 0.5 * size_[0];
   const auto fits = [&](std::size_t a) { return std::abs(d[a]) + r <= 0.5 * size_[a]; };
   if (source_.dimension == 2) return fits(0) && fits(1);
@@ -150,6 +218,10 @@ bool Cut::keeps(const Vec3& x, double r) const {
 
 double Cut::inside(const Vec3& d, double r) const {
   const Vec3 half{0.5 * size_[0], 0.5 * size_[1], 0.5 * size_[2]};
+  if (shape_ == Shape::surface) {
+    const auto at = [&](std::size_t a) { return middle_[a] + d[a] - origin_[a]; };
+    return surface_->volume_of_sphere({at(0), at(1), at(2)}, r);
+  }
   if (shape_ == Shape::sphere) {
     return geometry::volume_in_sphere(r, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), half[0]);
   }
@@ -181,6 +253,8 @@ double Cut::volume() const {
       return geometry::volume(2, 0.5 * size_[0]) * size_[2];
     case Shape::sphere:
       return geometry::volume(3, 0.5 * size_[0]);
+    case Shape::surface:
+      return surface_->volume();
     default:
       return source_.dimension == 2 ? size_[0] * size_[1] : size_[0] * size_[1] * size_[2];
   }
@@ -198,6 +272,11 @@ std::string Cut::words() const {
   if (shape_ == Shape::cylinder)
     return fmt::format("a cylinder of diameter {:g} m and height {:g} m", size_[0], size_[2]);
   if (shape_ == Shape::sphere) return fmt::format("a sphere of diameter {:g} m", size_[0]);
+  if (shape_ == Shape::surface) {
+    return fmt::format("the room of {:g} m3 inside the {} triangles of {}{}", surface_->volume(),
+                       surface_->shell().triangles.size(), text::printable(file_),
+                       mesh::mended_words(surface_->shell().mended));
+  }
   if (source_.dimension == 2) return fmt::format("a rectangle of {:g} x {:g} m", size_[0], size_[1]);
   return fmt::format("a box of {:g} x {:g} x {:g} m", size_[0], size_[1], size_[2]);
 }

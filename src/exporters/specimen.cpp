@@ -226,7 +226,7 @@ std::vector<std::string> header_lines(const Specimen& s) {
     lines.push_back(
         fmt::format("cut out of the pack: {}, particles wholly inside; its solid fraction, spheres cut by "
                     "its sides, is {:.9f}",
-                    s.cut, s.cut_fraction));
+                    comment(s.cut), s.cut_fraction));
   }
   if (s.copies[0] * s.copies[1] > 1) {
     lines.push_back(fmt::format("replicated: {} x {} copies of one periodic pack side by side, no larger random pack",

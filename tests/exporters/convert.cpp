@@ -15,6 +15,7 @@
 #include "geometry/cut_volume.hpp"
 #include "geometry/round_volume.hpp"
 #include "input/read.hpp"
+#include "mesh/shapes.hpp"
 #include "pack/samples.hpp"
 
 namespace packmpi::exporters {
@@ -285,6 +286,64 @@ TEST_F(Convert, ASpecimenThatIsCutOutHasWhatIsInIt) {
   EXPECT_TRUE(contains(contents(whole.files.at(1)), "region          mantle cylinder z 0.5 0.5 0.5 INF INF side in"));
 }
 
+void write_file(const comm::Comm& comm, const std::string& path, const std::string& bytes) {
+  if (comm.rank() == 0) std::ofstream(path, std::ios::binary) << bytes;
+  comm.barrier();
+}
+
+/// An L in centimetres, across a periodic side: particles wholly inside, and what of all is.
+TEST_F(Convert, ASpecimenInASurfaceOfAFile) {
+  const std::string path = make_pack(3000, 3, both_periodic);
+  const std::string l = folder_.file("l.stl");
+  write_file(comm_, l, mesh::binary_stl(testing::moved(testing::l_prism(0.5, 3), [](const Vec3& x) {
+               return Vec3{50.0 * x[0], 50.0 * x[1] - 100.0, 100.0 * x[2] + 5.0};
+             })));
+  const PackRows pack = read_pack(path);
+  const std::array<std::array<Vec3, 2>, 2> boxes{
+      {{{{0.0, 0.0, 0.05}, {1.0, 0.5, 0.55}}}, {{{0.0, 0.5, 0.05}, {0.5, 1.0, 0.55}}}}};  // both parts of the L
+  std::vector<std::int64_t> ids;
+  double solid = 0.0;
+  for (std::size_t k = 0; k < pack.id.size(); ++k) {
+    const double r = pack.radius[k];
+    const Vec3& x = pack.position[k];
+    const bool in_arms = (x[0] >= r && x[1] >= r && x[0] <= 1.0 - r && x[1] <= 0.5 - r) ||
+                         (x[0] >= r && x[1] >= r && x[0] <= 0.5 - r && x[1] <= 1.0 - r);
+    const bool at_corner =
+        x[0] <= 0.5 && x[1] <= 0.5 && x[0] >= r && x[1] >= r && std::hypot(0.5 - x[0], 0.5 - x[1]) >= r;
+    if ((in_arms || at_corner) && x[2] >= 0.05 + r && x[2] <= 0.55 - r) ids.push_back(static_cast<std::int64_t>(k) + 1);
+    for (int image = 0; image < 9; ++image) {
+      const Vec3 at{x[0] + 12.0 * (image % 3 - 1), x[1] + 10.0 * (image / 3 - 1), x[2]};
+      for (const auto& [low, high] : boxes) {
+        solid += geometry::volume_in_box(r, mesh::minus(low, at), mesh::minus(high, at));
+      }
+    }
+  }
+  const Converted done =
+      convert_pack(comm_, {.pack = path, .format = "csv", .cut = l + ":unit=cm,x=0.5,y=50cm", .force = true});
+  EXPECT_EQ(done.particles, static_cast<std::int64_t>(ids.size()));
+  EXPECT_GT(ids.size(), 10U);
+  EXPECT_NEAR(done.cut_fraction, solid / 0.375, 1e-9);
+  EXPECT_EQ(done.cut, "the room of 0.375 m3 inside the 252 triangles of l.stl");
+  if (comm_.rank() == 0) {
+    const auto rows = rows_of(done.files[0]);
+    ASSERT_EQ(rows.size(), ids.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      EXPECT_EQ(rows[k][0], static_cast<double>(ids[k]));
+      EXPECT_NEAR(rows[k][3], pack.position[static_cast<std::size_t>(ids[k] - 1)][2] - 0.05, 1e-14);
+    }
+  }
+  comm_.barrier();
+  const auto with = [&](const std::string& words) {
+    return refused({.pack = path, .format = "csv", .cut = words, .force = true}, ExitCode::bad_input);
+  };
+  EXPECT_TRUE(contains(with(l + ":unit=cm"), "from -1 to 0 m along y, and the container from 0 to 10 m"));
+  EXPECT_TRUE(contains(with(l + ":unit=kg"), "unit is \"kg\"; give one of lengths, such as mm"));
+  EXPECT_TRUE(contains(with(l + ":w=1"), "a surface has no \"w\"; there are unit, x, y, z"));
+  EXPECT_TRUE(contains(with("no.stl"), "no.stl cannot be opened (No such file"));
+  write_file(comm_, folder_.file("open.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nf 1 2 3\nf 1 3 4\n");
+  EXPECT_TRUE(contains(with(folder_.file("open.obj")), "open.obj: the surface is open: 4 edges"));
+}
+
 TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
   for (const int dimension : {2, 3}) {
     const std::string path = make_pack(100, dimension, dimension == 3 ? "\"wall\", \"periodic\"" : "\"wall\"");
@@ -383,8 +442,11 @@ TEST_F(Convert, WhatIsAskedWronglyIsRefusedAndNothingIsWritten) {
   flat.copies = {1, 2};
   EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "no second lateral axis"));
   flat.copies = {1, 1};
-  flat.cut = "cylinder:diameter=1";
-  EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "cut out of packs in 3D"));
+  for (const std::string& cut : {std::string("cylinder:diameter=1"), csv.pack + ".stl"}) {
+    write_file(comm_, csv.pack + ".stl", "solid\n");
+    flat.cut = cut;
+    EXPECT_TRUE(contains(refused(flat, ExitCode::bad_input), "cut out of packs in 3D"));
+  }
 }
 
 TEST_F(Convert, WhatCannotBeReadOrWrittenLeavesNothingBehind) {

@@ -36,6 +36,7 @@ COMMANDS = {
     "packmpi render pebbles.hdf": "--size 200",
     "packmpi analyze pebbles.hdf": "",
     "packmpi convert pebbles.hdf --to lammps": "",
+    "packmpi convert pebbles.hdf --to lammps --cut input/hopper.stl:unit=mm,x=300mm,y=300mm,z=450mm -o part.data": "",
     "packmpi convert pebbles.hdf --to lammps --cut cylinder:diameter=300mm,height=400mm -o specimen.data": "",
     "scripts/study/vessels.py": "--ratios 4 --seeds 1 --document none.md --results made --set layers.duration=0.01 --set rest.wait=0 --set layers.maximum=1",
     "build/packmpi check input/concrete.toml": "",
@@ -79,7 +80,7 @@ COMMANDS = {
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
 NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
-          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.lammps.data", "specimen.data", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
+          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.lammps.data", "specimen.data", "part.data", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "ro-crate-metadata.json", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew

@@ -1,0 +1,214 @@
+#include "mesh/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "base/digest.hpp"
+#include "mesh/vectors.hpp"
+
+namespace packmpi::mesh {
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+std::uint64_t digest_of(const Shell& shell) {
+  std::uint64_t hash = fnv_start;
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const Corners c = shell.corners(t);
+    std::array<char, sizeof c> bytes{};
+    std::memcpy(bytes.data(), c.data(), sizeof c);
+    hash = fnv_add(hash, {bytes.data(), bytes.size()});
+  }
+  return hash;
+}
+
+}  // namespace
+
+Surface::Surface(const std::vector<Corners>& triangles, const std::string& name)
+    : shell_(close(triangles, name)), grid_(shell_), features_(shell_), digest_(digest_of(shell_)) {
+  weigh_points();
+  fill_cells();
+  volume_ = volume_below(2.0 * shell_.high[2] - shell_.low[2]);
+}
+
+void Surface::weigh_points() {
+  face_.resize(shell_.triangles.size());
+  point_.assign(shell_.points.size(), {});
+  for (std::size_t t = 0; t < face_.size(); ++t) {
+    const Corners c = shell_.corners(t);
+    face_[t] = unit(shell_.normal(t));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = minus(c.at((k + 1) % 3), c.at(k)), b = minus(c.at((k + 2) % 3), c.at(k));
+      Vec3& sum = point_[static_cast<std::size_t>(shell_.triangles[t].at(k))];
+      sum = plus(sum, times(angle_of(dot(a, b), norm(cross(a, b))), face_[t]));
+    }
+  }
+}
+
+// Steps from the cells that the surface meets; the others hang together in regions that are in the room or outside.
+void Surface::fill_cells() {
+  constexpr std::int16_t unknown = -1, most = 10000;
+  const std::int64_t cells = grid_.cells();
+  std::vector<std::int64_t> open, next;
+  clear_.assign(static_cast<std::size_t>(cells), unknown);
+  for (std::int64_t c = 0; c < cells; ++c) {
+    if (!grid_.is_empty(c)) clear_[static_cast<std::size_t>(c)] = 0, open.push_back(c);
+  }
+  for (std::int16_t steps = 1; !open.empty();
+       steps = std::min<std::int16_t>(static_cast<std::int16_t>(steps + 1), most)) {
+    next.clear();
+    for (const std::int64_t c : open) {
+      grid_.around(c, false, [&](std::int64_t other) {
+        if (std::int16_t& here = clear_[static_cast<std::size_t>(other)]; here == unknown) {
+          here = steps;
+          next.push_back(other);
+        }
+      });
+    }
+    std::swap(open, next);
+  }
+  std::vector<bool> seen(clear_.size());
+  for (std::int64_t seed = 0; seed < cells; ++seed) {
+    if (seen[static_cast<std::size_t>(seed)] || clear_[static_cast<std::size_t>(seed)] == 0) continue;
+    const bool outside = nearest(grid_.middle(seed)).distance < 0.0;
+    seen[static_cast<std::size_t>(seed)] = true;
+    open.assign(1, seed);
+    while (!open.empty()) {
+      const std::int64_t c = open.back();
+      open.pop_back();
+      grid_.around(c, true, [&](std::int64_t other) {
+        const auto at = static_cast<std::size_t>(other);
+        if (seen[at] || clear_[at] == 0) return;
+        seen[at] = true;
+        open.push_back(other);
+      });
+      if (std::int16_t& here = clear_[static_cast<std::size_t>(c)]; outside) here = static_cast<std::int16_t>(-here);
+    }
+  }
+}
+
+// Ericson, Real-Time Collision Detection (2005), 5.1.5.
+Surface::Hit Surface::hit(const Vec3& x, int triangle) const {
+  const Corners c = shell_.corners(static_cast<std::size_t>(triangle));
+  const auto found = [&](const Vec3& place, int feature) {
+    const Vec3 d = minus(x, place);
+    return Hit{dot(d, d), place, triangle, feature};
+  };
+  const Vec3 ab = minus(c[1], c[0]), ac = minus(c[2], c[0]), ax = minus(x, c[0]);
+  const double d1 = dot(ab, ax), d2 = dot(ac, ax);
+  if (d1 <= 0.0 && d2 <= 0.0) return found(c[0], 0);
+  const Vec3 bx = minus(x, c[1]);
+  const double d3 = dot(ab, bx), d4 = dot(ac, bx);
+  if (d3 >= 0.0 && d4 <= d3) return found(c[1], 1);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return found(plus(c[0], times(d1 / (d1 - d3), ab)), 3);
+  const Vec3 cx = minus(x, c[2]);
+  const double d5 = dot(ab, cx), d6 = dot(ac, cx);
+  if (d6 >= 0.0 && d5 <= d6) return found(c[2], 2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return found(plus(c[0], times(d2 / (d2 - d6), ac)), 5);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    return found(plus(c[1], times((d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c[2], c[1]))), 4);
+  }
+  const double whole = va + vb + vc;
+  return found(plus(c[0], plus(times(vb / whole, ab), times(vc / whole, ac))), 6);
+}
+
+Vec3 Surface::outward(const Hit& hit) const {
+  const auto t = static_cast<std::size_t>(hit.triangle);
+  if (hit.feature < 3) {
+    return point_[static_cast<std::size_t>(shell_.triangles[t].at(static_cast<std::size_t>(hit.feature)))];
+  }
+  if (hit.feature == 6) return face_[t];
+  const int other = shell_.neighbours[t].at(static_cast<std::size_t>(hit.feature - 3));
+  return plus(face_[t], face_[static_cast<std::size_t>(other)]);
+}
+
+Nearest Surface::nearest(const Vec3& x) const {
+  double outside = 0.0;  // of the box around the surface
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double beyond = std::max({0.0, shell_.low[a] - x[a], x[a] - shell_.high[a]});
+    outside += beyond * beyond;
+  }
+  Hit best{endless, {}, -1, 6};
+  std::vector<int> near;
+  for (double half = std::sqrt(outside) + grid_.width();; half *= 2.0) {
+    if (best.triangle >= 0) half = std::sqrt(best.squared) * (1.0 + 1e-12);
+    grid_.in_box({x[0] - half, x[1] - half, x[2] - half}, {x[0] + half, x[1] + half, x[2] + half}, near);
+    for (const int t : near) {
+      if (const Hit here = hit(x, t); here.squared < best.squared) best = here;
+    }
+    if (best.squared <= half * half) break;
+  }
+  const double distance = std::sqrt(best.squared);
+  return {dot(minus(x, best.place), outward(best)) > 0.0 ? -distance : distance, best.place};
+}
+
+double Surface::distance(const Vec3& x, double range) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(x[a] > shell_.low[a] - range && x[a] < shell_.high[a] + range)) return -range;
+  }
+  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
+  if ((std::abs(steps) - 1) * grid_.width() >= range) return steps > 0 ? range : -range;
+  return std::clamp(nearest(x).distance, -range, range);
+}
+
+void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
+  found.clear();
+  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
+  if ((std::abs(steps) - 1) * grid_.width() >= range) return;
+  const Table table = features_.table(behind);
+  grid_.in_box({x[0] - range, x[1] - range, x[2] - range}, {x[0] + range, x[1] + range, x[2] + range}, found.scratch);
+  const double square = range * range;
+  const auto close_to = [&](const Vec3& place) { return dot(minus(x, place), minus(x, place)) < square; };
+  std::erase_if(found.scratch, [&](int t) { return !(hit(x, t).squared < square); });
+  for (const int t : found.scratch) {
+    const std::int32_t face = features_.face_of(static_cast<std::size_t>(t));
+    const double* plane = table.faces + 4 * std::int64_t{face};
+    if (plane[3] - along(plane, x.data()) > -(behind + range)) found.feature.push_back(face);
+    const Corners c = shell_.corners(static_cast<std::size_t>(t));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (const std::int32_t corner = features_.corners_of(static_cast<std::size_t>(t)).at(k);
+          corner >= 0 && close_to(c.at(k))) {
+        found.feature.push_back(corner);
+      }
+      const std::int32_t edge = features_.edges_of(static_cast<std::size_t>(t)).at(k);
+      if (edge < 0) continue;
+      const Vec3 side = minus(c.at((k + 1) % 3), c.at(k));
+      const double u = std::clamp(dot(minus(x, c.at(k)), side) / dot(side, side), 0.0, 1.0);
+      if (close_to(plus(c.at(k), times(u, side)))) found.feature.push_back(edge);
+    }
+  }
+  std::ranges::sort(found.feature);
+  found.feature.erase(std::unique(found.feature.begin(), found.feature.end()), found.feature.end());
+  for (const std::int32_t feature : found.feature) {
+    if (feature < features_.edge_begin()) {
+      for (const int t : found.scratch) {
+        if (features_.face_of(static_cast<std::size_t>(t)) == feature) found.triangles.push_back(t);
+      }
+    }
+    found.end.push_back(static_cast<std::int32_t>(found.triangles.size()));
+  }
+}
+
+Touch Surface::touch_of(std::int32_t feature, const Vec3& x, double behind) const {
+  const Table table = features_.table(behind);
+  if (feature >= features_.edge_begin()) return touch(table, feature, nullptr, 0, 0, x.data());
+  const double* plane = table.faces + 4 * std::int64_t{feature};
+  const double height = plane[3] - along(plane, x.data()), margin = shell_.tolerance;
+  std::vector<int> near;
+  Vec3 low{}, high{};  // around the foot
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double foot = x[a] + height * plane[a];
+    low[a] = foot - 4.0 * margin, high[a] = foot + 4.0 * margin;
+  }
+  grid_.in_box(low, high, near);
+  std::erase_if(near, [&](int t) { return features_.face_of(static_cast<std::size_t>(t)) != feature; });
+  return touch(table, feature, near.data(), 0, static_cast<std::int32_t>(near.size()), x.data());
+}
+
+}  // namespace packmpi::mesh

@@ -1,0 +1,85 @@
+/// A room inside a closed surface of triangles: volumes, sections, distances.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/features.hpp"
+#include "mesh/grid.hpp"
+#include "mesh/shell.hpp"
+
+namespace packmpi::mesh {
+
+/// What is nearest to a point.
+struct Nearest {
+  double distance;  ///< [m], negative outside the room
+  Vec3 place;       ///< [m] of the surface
+};
+
+/// Features of a surface that a sphere may touch, by their numbers in ascending order; of each the triangles that it
+/// may be above.
+struct NearFeatures {
+  std::vector<std::int32_t> feature, end;  ///< end of its triangles; those of the first begin at 0
+  std::vector<std::int32_t> triangles;
+  std::vector<int> scratch;
+
+  [[nodiscard]] std::int32_t begin(std::size_t k) const { return k == 0 ? 0 : end[k - 1]; }
+  void clear() { feature.clear(), end.clear(), triangles.clear(); }
+};
+
+/// Immutable. The same on every rank. Local; every function may be called by several threads at once.
+class Surface {
+ public:
+  /// Throws as close(). Cost: O(triangles).
+  Surface(const std::vector<Corners>& triangles, const std::string& name);
+
+  [[nodiscard]] const Shell& shell() const { return shell_; }
+  [[nodiscard]] const Vec3& low() const { return shell_.low; }    ///< [m] of the box around it
+  [[nodiscard]] const Vec3& high() const { return shell_.high; }  ///< [m]
+  [[nodiscard]] double volume() const { return volume_; }         ///< [m3] of the room
+  /// Of the triangles' corners: what names this surface in files.
+  [[nodiscard]] std::uint64_t digest() const { return digest_; }
+
+  /// [m3] of the room below a height [m]. To rounding: triangles are cut at the height. Cost: O(triangles).
+  [[nodiscard]] double volume_below(double height) const;
+  /// [m2] of the room's section at a height; of a floor that lies in it, what is right below.
+  [[nodiscard]] double area_at(double height) const;
+
+  /// The nearest place of the surface, and on which side of it the point is, told by the angles of the triangles there
+  /// (Baerentzen and Aanaes 2005).
+  [[nodiscard]] Nearest nearest(const Vec3& x) const;
+  /// [m] to the surface, negative outside; cut at `range` in the room and at -range outside of it. Cheap where it is
+  /// farther.
+  [[nodiscard]] double distance(const Vec3& x, double range) const;
+
+  [[nodiscard]] const Features& features() const { return features_; }
+  /// All features that are nearer to x than `range` [m], and not more than `behind` [m] and the range on the other side
+  /// of x.
+  void near(const Vec3& x, double range, double behind, NearFeatures& found) const;
+  /// Where a feature is, seen from x. See Table for `behind`.
+  [[nodiscard]] Touch touch_of(std::int32_t feature, const Vec3& x, double behind) const;
+
+  /// [m3] of a sphere what is in the room. In closed form, to rounding.
+  [[nodiscard]] double volume_of_sphere(const Vec3& x, double r) const;
+
+ private:
+  struct Hit {
+    double squared;
+    Vec3 place;
+    int triangle, feature;  // corner 0, 1, 2; edge 3, 4, 5; 6 its inside
+  };
+  [[nodiscard]] Hit hit(const Vec3& x, int triangle) const;
+  [[nodiscard]] Vec3 outward(const Hit& hit) const;
+  void weigh_points();
+  void fill_cells();
+
+  Shell shell_;
+  Grid grid_;
+  Features features_;
+  std::vector<Vec3> face_, point_;   // normals: of triangles; of points, weighted by angles
+  std::vector<std::int16_t> clear_;  // of a cell: steps to one that the surface meets, negative outside the room
+  double volume_ = 0.0;
+  std::uint64_t digest_ = 0;
+};
+
+}  // namespace packmpi::mesh
