@@ -179,7 +179,7 @@ double ghost_share(const scene::Scene& scene, int ranks) {
   const auto side = [&](std::size_t axis, int parts) {  // copies along one axis, by the part's own width
     if (parts == 1) return 0.0;
     const double faces = parts == 2 && !scene.container.periodic[axis] ? 1.0 : 2.0;
-    return std::min(1.0 * (parts - 1), faces * scene.column_width() * parts / scene.container.size[axis]);
+    return std::min(1.0 * (parts - 1), faces * scene.list_range() * parts / scene.container.size[axis]);
   };
   const std::size_t longer =
       scene.container.dimension == 3 && scene.container.size[1] > scene.container.size[0] ? 1 : 0;

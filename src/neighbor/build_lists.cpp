@@ -12,19 +12,19 @@ struct Search {
   const double* x;
   const double* y;
   const double* z;            // null in 2D
-  const double* radius;       // null: equal radii
-  double reach;               // equal: the whole cut-off; graded: cut-off without the radii
+  const double* extent;       // how far each reaches; not for the near field
+  double reach;               // the cut-off of the near field
   double period_x, period_y;  // 0: wall
 };
 
 // Slots of [begin, end) within the cut-off of slot i, appended at out; returns the new end. Branch-free: each candidate
 // is written and kept by moving the end.
-template <bool Graded, bool Periodic, bool ThreeD>
+template <bool Near, bool Periodic, bool ThreeD>
 LocalIndex* find(const Search& s, LocalIndex i, LocalIndex begin, LocalIndex end, LocalIndex* out) {
   const double xi = s.x[i];
   const double yi = s.y[i];
   const double zi = ThreeD ? s.z[i] : 0.0;
-  const double base = Graded ? s.reach + s.radius[i] : s.reach;
+  const double base = Near ? s.reach : s.extent[i];
   for (LocalIndex j = begin; j < end; ++j) {
     double dx = s.x[j] - xi;
     double dy = s.y[j] - yi;
@@ -34,7 +34,7 @@ LocalIndex* find(const Search& s, LocalIndex i, LocalIndex begin, LocalIndex end
     }
     double squared = dx * dx + dy * dy;
     if constexpr (ThreeD) squared += (s.z[j] - zi) * (s.z[j] - zi);
-    const double cut = Graded ? base + s.radius[j] : base;
+    const double cut = Near ? base : base + s.extent[j];
     *out = j;
     out += static_cast<int>(squared < cut * cut);
   }
@@ -43,12 +43,12 @@ LocalIndex* find(const Search& s, LocalIndex i, LocalIndex begin, LocalIndex end
 
 using Find = LocalIndex* (*)(const Search&, LocalIndex, LocalIndex, LocalIndex, LocalIndex*);
 
-Find choose(bool graded, bool periodic, bool three_d) {
+Find choose(bool near, bool periodic, bool three_d) {
   if (three_d) {
-    if (graded) return periodic ? find<true, true, true> : find<true, false, true>;
+    if (near) return periodic ? find<true, true, true> : find<true, false, true>;
     return periodic ? find<false, true, true> : find<false, false, true>;
   }
-  if (graded) return periodic ? find<true, true, false> : find<true, false, false>;
+  if (near) return periodic ? find<true, true, false> : find<true, false, false>;
   return periodic ? find<false, true, false> : find<false, false, false>;
 }
 
@@ -71,19 +71,17 @@ void Neighborhood::find_runs(int c, std::size_t k, std::vector<Run>& runs) const
   for (const int other : columns_.around(c)) add(frozen_cells_, other);
 }
 
-// `touching` = 1 lists pairs up to touching + skin; 0 with a cut-off between centres: near field.
-void Neighborhood::build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list) {
+// Pairs that may come to touch, or, with a cut-off between centres, those of the near field.
+void Neighborhood::build_pairs(const particles::Store& store, std::optional<double> cutoff, PairList& list) {
   const geometry::Container& box = scene_->container;
-  const bool graded = scene_->features.graded && touching > 0.0;
-  Search s{x_[0].data(),
-           x_[1].data(),
-           x_[2].data(),
-           radius_.data(),
-           cutoff + scene_->skin,
-           box.periodic[0] ? box.size[0] : 0.0,
-           box.dimension == 3 && box.periodic[1] ? box.size[1] : 0.0};
-  if (touching > 0.0 && !graded) s.reach += 2.0 * scene_->sizes.largest();
-  const Find find_in = choose(graded, scene_->features.periodic, box.dimension == 3);
+  const Search s{x_[0].data(),
+                 x_[1].data(),
+                 x_[2].data(),
+                 extent_.data(),
+                 cutoff.value_or(0.0) + 2.0 * margins_.most(),
+                 box.periodic[0] ? box.size[0] : 0.0,
+                 box.dimension == 3 && box.periodic[1] ? box.size[1] : 0.0};
+  const Find find_in = choose(cutoff.has_value(), scene_->features.periodic, box.dimension == 3);
 
   std::size_t size = 0;
   LocalIndex window = 1;
@@ -123,14 +121,16 @@ void Neighborhood::build_pairs(const particles::Store& store, double touching, d
   list.first.resize(size);
   list.second.resize(size);
   list.window = window;
-  if (touching > 0.0) candidates_ = looked_at;
+  if (!cutoff) candidates_ = looked_at;
 }
 
 void Neighborhood::build_walls(const particles::Store& store) {
   walls_.particle.clear();
   walls_.wall.clear();
+  const double walls_move = scene_->in.confinement ? 0.5 * scene_->skin : 0.0;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    scene_->container.near_walls(store.position(i), store.radius(i) + scene_->skin, [&](Wall wall, double) {
+    const double range = extent_[static_cast<std::size_t>(i)] + walls_move;
+    scene_->container.near_walls(store.position(i), range, [&](Wall wall, double) {
       walls_.particle.push_back(i);
       walls_.wall.push_back(wall);
     });

@@ -13,14 +13,14 @@ using Wall = geometry::Surface;
 
 /// Half list: each pair that has an owned end once. first[p] is an owned slot, ascending in p; second[p] > first[p], an
 /// owned or a ghost slot (>= Store::owned()). A pair across a rank border is listed on both ranks, each with its own
-/// particle first. Distance at the rebuild < reach of the pair + skin.
+/// particle first. Distance at the rebuild < sum of their radii and margins.
 struct PairList {
   std::vector<LocalIndex> first;
   std::vector<LocalIndex> second;
   LocalIndex window = 1;  ///< 1 + largest second - first over pairs of two owned particles
 };
 
-/// Owned particles within skin of a wall, ascending in particle; one entry for each (particle, wall).
+/// Owned particles within their margin of a wall, ascending in particle; one entry for each (particle, wall).
 struct WallList {
   std::vector<LocalIndex> particle;
   std::vector<Wall> wall;

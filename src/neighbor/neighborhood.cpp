@@ -16,12 +16,12 @@
 namespace packmpi::neighbor {
 namespace {
 
-// True displacements are worth looking at only if lists can then live on for a while.
-constexpr double live_on = 0.8;
+// Lists live on after true displacements were looked at if they need not be looked at again for so many steps.
+constexpr double live_on = 2.0;
 // No particle of a valid run is this many container heights up.
 constexpr double highest = 1000.0;
 
-// Sets the levels of cells up to `top`, as high as a column is wide. One cell holds all above the highest place of a
+// Sets the levels of cells up to `top`, as high as lists reach. One cell holds all above the highest place of a
 // valid run, so that a particle flung up costs no memory. Where there would be far more cells than particles they are
 // higher, which also keeps their number in a LocalIndex.
 void set_levels(Cells& cells, double top, const scene::Scene& scene, int columns, LocalIndex owned) {
@@ -31,8 +31,8 @@ void set_levels(Cells& cells, double top, const scene::Scene& scene, int columns
   const double affordable =
       std::min(std::max(always, a_particle * owned), double{std::numeric_limits<LocalIndex>::max() - 1});
   const double levels = std::max(affordable / std::max(columns, 1) - 1.0, 0.0);
-  const double wanted = height / scene.column_width();
-  cells.inverse_height = wanted <= levels ? 1.0 / scene.column_width() : levels / height;
+  const double wanted = height / scene.list_range();
+  cells.inverse_height = wanted <= levels ? 1.0 / scene.list_range() : levels / height;
   cells.levels = static_cast<int>(std::min(wanted, levels)) + 1;
 }
 
@@ -46,7 +46,8 @@ Neighborhood::Neighborhood(const comm::Comm& comm, const scene::Scene& scene, co
       frozen_(comm, scene.features.layout(), scene::stored_doubles(scene.features)),
       halo_(comm, scene.features.layout()),
       size_classes_(scene, ownership),
-      memory_(scene.features) {}
+      memory_(scene.features),
+      margins_(scene) {}
 
 void Neighborhood::ownership_changed() {
   columns_ = LocalColumns(*ownership_, comm_->rank());
@@ -81,16 +82,17 @@ void Neighborhood::rebuild(particles::Store& store) {
   if (frozen_.in_use()) add_frozen(store);
   remember_positions(store);
   if (scene_->features.size_levels > 1) {
-    size_classes_.build({x_[0], x_[1], x_[2], radius_, store.owned()}, pairs_);
+    size_classes_.build({x_[0], x_[1], x_[2], extent_, store.owned()}, pairs_);
     candidates_ = size_classes_.candidates();
   } else {
-    build_pairs(store, 1.0, 0.0, pairs_);
+    build_pairs(store, std::nullopt, pairs_);
   }
-  if (scene_->in.near_field) build_pairs(store, 0.0, scene_->in.near_field->cutoff, near_pairs_);
+  if (scene_->in.near_field) build_pairs(store, scene_->in.near_field->cutoff, near_pairs_);
   build_walls(store);
   memory_.lay_down(store, pairs_, walls_);
   if (one_sided_) complete_borders(store);
   sweep_ = make_sweep(store.owned(), pairs_, walls_, halo_);
+  slack_ = least_slack(store);
   drift_ = 0.0;
   strained_ = 0.0;
   ++effort_.rebuilds;
@@ -135,16 +137,20 @@ void Neighborhood::meet(std::array<double, 2>& shared) {
 }
 
 Alarm Neighborhood::follow(particles::Store& store, double max_speed, double time_step, Alarm mine) {
-  drift_ += max_speed * time_step;
+  const double way = max_speed * time_step;
+  time_step_ = time_step;
+  drift_ += way;
   if (!std::isfinite(drift_)) mine = Alarm::fault;
-  std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_ + strained_, static_cast<double>(mine)};
+  std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_ - slack_, static_cast<double>(mine)};
   meet(shared);
   const auto alarm = static_cast<Alarm>(static_cast<int>(shared[1]));
-  const double limit = 0.5 * scene_->skin;
   begin_missing(store);
-  if (alarm == Alarm::fault || shared[0] <= limit) return alarm;
-  drift_ = largest_displacement(store);
-  if (comm_->max(drift_) + strained_ <= live_on * limit) return alarm;
+  if (alarm == Alarm::fault || shared[0] + strained_ <= 0.0) return alarm;
+  slack_ = least_slack(store);
+  drift_ = 0.0;
+  std::array<double, 2> worst{-slack_, way};
+  comm_->max(worst);
+  if (worst[0] + strained_ + live_on * worst[1] <= 0.0) return alarm;
   bool all_inside = true;
   for (LocalIndex i = 0; i < store.owned() && all_inside; ++i) all_inside = is_inside(store, i);
   if (comm_->max(std::int64_t{all_inside ? 0 : 1}) > 0) return Alarm::fault;
@@ -248,12 +254,19 @@ void Neighborhood::sort_owned(particles::Store& store) {
   const auto vertical = static_cast<std::size_t>(scene_->container.vertical());
   double top = 0.0;
   double bottom = HUGE_VAL;
+  double fastest = 0.0;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    top = std::max(top, store.position(i)[vertical]);
-    bottom = std::min(bottom, store.position(i)[vertical]);
+    const double height = store.position(i)[vertical];
+    const Vec3 v = store.velocity(i);
+    top = std::max(top, height);
+    bottom = std::min(bottom, height);
+    fastest = std::max(fastest, dot(v, v));
   }
   cells_.bottom = frozen_.in_use() ? std::min(top, bottom) : 0.0;  // nothing is listed far below the moving particles
-  set_levels(cells_, comm_->max(top), *scene_, columns_.total(), store.owned());
+  std::array<double, 2> most{top, std::sqrt(fastest)};
+  comm_->max(most);
+  margins_.plan(most[1], time_step_);
+  set_levels(cells_, most[0], *scene_, columns_.total(), store.owned());
   const auto levels = static_cast<std::size_t>(cells_.levels);
   cells_.start.assign(static_cast<std::size_t>(columns_.total()) * levels + 1, 0);
 
@@ -278,7 +291,7 @@ void Neighborhood::sort_owned(particles::Store& store) {
 std::vector<Sends> Neighborhood::choose_sends(const particles::Store& store) const {
   std::vector<Sends> sends;
   for (const Rank rank : ownership_->neighbors()) sends.push_back({rank, {}});
-  const double range = scene_->column_width() * (1.0 + 1e-12);  // distance() is rounded
+  const double range = scene_->list_range() * (1.0 + 1e-12);  // distance() is rounded
   const auto levels = static_cast<std::size_t>(cells_.levels);
   for (const LocalColumns::Border& border : columns_.borders()) {
     std::vector<LocalIndex>& slots = std::ranges::find(sends, border.rank, &Sends::rank)->slots;
@@ -316,7 +329,7 @@ void Neighborhood::sort_ghosts(particles::Store& store) {
 
 // Frozen particles that a moving one of the same or a touching column may reach, as ghosts behind the halo's.
 void Neighborhood::add_frozen(particles::Store& store) {
-  const double range = scene_->column_width() * (1.0 + 1e-12);
+  const double range = scene_->list_range() * (1.0 + 1e-12);
   if (!frozen_arranged_) {
     frozen_.store().set_ghosts(0);
     migrate(frozen_.store(), destinations(frozen_.store()), memory_.in_use() ? &frozen_.baggage() : nullptr,
@@ -352,9 +365,12 @@ void Neighborhood::remember_positions(const particles::Store& store) {
     resize_tightly(x, total);
     for (std::size_t i = 0; i < total; ++i) x[i] = store.record(static_cast<LocalIndex>(i))[a];
   }
-  if (!scene_->features.graded) return;
-  resize_tightly(radius_, total);
-  for (std::size_t i = 0; i < total; ++i) radius_[i] = store.radius(static_cast<LocalIndex>(i));
+  resize_tightly(extent_, total);
+  const auto moving = static_cast<std::size_t>(store.owned() + halo_.ghosts());  // behind them what stands still
+  for (std::size_t i = 0; i < total; ++i) {
+    const auto slot = static_cast<LocalIndex>(i);
+    extent_[i] = store.radius(slot) + (i < moving ? margins_.of(norm(store.velocity(slot))) : 0.0);
+  }
 }
 
 void Neighborhood::deform(particles::Store& store, const std::array<double, 2>& factors) {
@@ -370,9 +386,11 @@ void Neighborhood::deform(particles::Store& store, const std::array<double, 2>& 
   }
 }
 
-double Neighborhood::largest_displacement(const particles::Store& store) const {
+// What is left of the margin of that particle which has least; without particles, all there can be.
+double Neighborhood::least_slack(const particles::Store& store) const {
   const geometry::Container& box = scene_->container;
-  double largest = 0.0;
+  constexpr double hair = 1e-9;  // sums are rounded
+  double least = margins_.most();
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double* record = store.record(i);
     double squared = 0.0;
@@ -382,9 +400,9 @@ double Neighborhood::largest_displacement(const particles::Store& store) const {
       if (a < box.lateral_axes() && box.periodic[axis]) d = geometry::shortest(d, box.size[axis]);
       squared += d * d;
     }
-    largest = std::max(largest, squared);
+    least = std::min(least, extent_[static_cast<std::size_t>(i)] - store.radius(i) - std::sqrt(squared));
   }
-  return std::sqrt(largest);
+  return least - hair * margins_.most();
 }
 
 std::vector<std::int64_t> Neighborhood::column_counts(const particles::Store& store) const {
@@ -402,7 +420,7 @@ std::vector<std::int64_t> Neighborhood::column_counts(const particles::Store& st
 
 std::size_t Neighborhood::bytes() const noexcept {
   std::size_t total =
-      halo_.bytes() + cells_.start.capacity() * sizeof(LocalIndex) + radius_.capacity() * sizeof(double);
+      halo_.bytes() + cells_.start.capacity() * sizeof(LocalIndex) + extent_.capacity() * sizeof(double);
   total += frozen_.store().bytes() + frozen_cells_.start.capacity() * sizeof(LocalIndex);
   for (const std::vector<double>& x : x_) total += x.capacity() * sizeof(double);
   for (const PairList* list : {&pairs_, &near_pairs_}) {

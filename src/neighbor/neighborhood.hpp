@@ -1,6 +1,7 @@
 /// Who is near whom: migration, memory order, ghosts and Verlet lists of one rank, and when they must be made anew.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "neighbor/frozen.hpp"
 #include "neighbor/halo.hpp"
 #include "neighbor/lists.hpp"
+#include "neighbor/margins.hpp"
 #include "neighbor/size_classes.hpp"
 #include "neighbor/sweep.hpp"
 #include "particles/store.hpp"
@@ -117,9 +119,9 @@ class Neighborhood {
     LocalIndex begin, end;  // slots
   };
   void find_runs(int c, std::size_t k, std::vector<Run>& runs) const;
-  void build_pairs(const particles::Store& store, double touching, double cutoff, PairList& list);
+  void build_pairs(const particles::Store& store, std::optional<double> cutoff, PairList& list);
   void build_walls(const particles::Store& store);
-  [[nodiscard]] double largest_displacement(const particles::Store& store) const;  // this rank's [m]
+  [[nodiscard]] double least_slack(const particles::Store& store) const;  // this rank's [m]
 
   const comm::Comm* comm_;
   const scene::Scene* scene_;
@@ -136,10 +138,13 @@ class Neighborhood {
   ContactMemory memory_;
   bool one_sided_ = false;  // histories of border pairs may be at one of their owners only, on some rank
   std::vector<Leg> sweep_;
-  // Positions at the last rebuild, of owned and ghosts, one array an axis; radii only if graded.
+  // Positions at the last rebuild, of owned and ghosts, one array an axis, and how far lists reach from there.
   std::array<std::vector<double>, 3> x_;
-  std::vector<double> radius_;
-  double drift_ = 0.0;           // bound of any displacement since the rebuild, this rank [m]
+  std::vector<double> extent_;
+  Margins margins_;
+  double time_step_ = 0.0;       // the last [s]
+  double slack_ = 0.0;           // what any particle could still move when it was looked at, this rank [m]
+  double drift_ = 0.0;           // bound of any displacement since then, this rank [m]
   double strained_ = 0.0;        // what deformation has added since then, the same on all ranks [m]
   std::int64_t candidates_ = 0;  // in the last rebuild
   Effort effort_;

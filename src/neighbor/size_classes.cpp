@@ -40,7 +40,7 @@ void SizeClasses::build(const Cloud& cloud, PairList& list) {
   for (std::size_t k = 0; k < levels_.size(); ++k) {
     const Level& mine = levels_[k];
     for (std::size_t e = 0; e < mine.slot.size(); ++e) {
-      const Seeker seeker{mine.x[e], mine.y[e], mine.z[e], mine.radius[e], mine.slot[e], true, e};
+      const Seeker seeker{mine.x[e], mine.y[e], mine.z[e], mine.extent[e], mine.slot[e], true, e};
       look(seeker, mine);
       Seeker stranger = seeker;
       stranger.own_class = false;
@@ -53,8 +53,8 @@ void SizeClasses::build(const Cloud& cloud, PairList& list) {
 // Cells one interaction range of the class wide; wider where that would make many more cells than particles.
 void SizeClasses::make_grid(Level& level, double low, double high) const {
   const geometry::Container& box = scene_->container;
-  const double width = (2.0 * level.largest + scene_->skin) * (1.0 + 1e-9);
-  const double margin = scene_->column_width() * (1.0 + 1e-9);
+  const double width = 2.0 * level.largest * (1.0 + 1e-9);
+  const double margin = scene_->list_range() * (1.0 + 1e-9);
   const double most = cells_a_particle * static_cast<double>(level.slot.size()) + 4096.0;
   const auto lateral_cells = [&](double wide) {
     double cells = 1.0;
@@ -96,9 +96,9 @@ void SizeClasses::sort(const Cloud& cloud) {
   double high = -HUGE_VAL;
   for (std::size_t i = 0; i < cloud.x.size(); ++i) {
     std::size_t k = 0;
-    for (double half = 0.5 * scene_->sizes.largest(); k + 1 < count && cloud.radius[i] <= half; half *= 0.5) ++k;
+    for (double half = 0.5 * scene_->sizes.largest(); k + 1 < count && cloud.extent[i] <= half; half *= 0.5) ++k;
     levels_[k].slot.push_back(static_cast<LocalIndex>(i));
-    levels_[k].largest = std::max(levels_[k].largest, cloud.radius[i]);
+    levels_[k].largest = std::max(levels_[k].largest, cloud.extent[i]);
     low = std::min(low, up(i));
     high = std::max(high, up(i));
   }
@@ -106,7 +106,7 @@ void SizeClasses::sort(const Cloud& cloud) {
   for (Level& level : levels_) {
     const std::vector<LocalIndex> unsorted = level.slot;
     const std::size_t n = unsorted.size();
-    for (auto* field : {&level.x, &level.y, &level.z, &level.radius}) field->resize(n);
+    for (auto* field : {&level.x, &level.y, &level.z, &level.extent}) field->resize(n);
     if (n == 0) continue;
     make_grid(level, low, high);
     home.resize(n);
@@ -124,7 +124,7 @@ void SizeClasses::sort(const Cloud& cloud) {
       level.x[to] = cloud.x[i];
       level.y[to] = cloud.y[i];
       level.z[to] = deep ? cloud.z[i] : 0.0;
-      level.radius[to] = cloud.radius[i];
+      level.extent[to] = cloud.extent[i];
     }
   }
 }
@@ -133,7 +133,7 @@ void SizeClasses::sort(const Cloud& cloud) {
 void SizeClasses::look(const Seeker& seeker, const Level& level) {
   if (level.slot.empty()) return;
   const geometry::Container& box = scene_->container;
-  const double reach = (seeker.radius + level.largest + scene_->skin) * (1.0 + 1e-9);
+  const double reach = (seeker.extent + level.largest) * (1.0 + 1e-9);
   const bool plane = box.lateral_axes() == 2;
   thread_local std::vector<int> xs, ys;
   slots_near(level.lateral[0], box.periodic[0], seeker.x, reach, xs);
@@ -166,7 +166,7 @@ void SizeClasses::look_at(const Seeker& seeker, const Level& level, LocalIndex b
   candidates_ += static_cast<std::int64_t>(n);
   if (pairs_.size() < found_ + n) pairs_.resize(std::max(2 * pairs_.size(), found_ + n + 4096));
   const geometry::Container& box = scene_->container;
-  const double base = seeker.radius + scene_->skin;
+  const double base = seeker.extent;
   const bool periodic = scene_->features.periodic;
   Pair* out = pairs_.data() + found_;
   for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
@@ -177,7 +177,7 @@ void SizeClasses::look_at(const Seeker& seeker, const Level& level, LocalIndex b
       if (box.dimension == 3 && box.periodic[1]) dy = geometry::shortest(dy, box.size[1]);
     }
     const double dz = level.z[e] - seeker.z;
-    const double cut = base + level.radius[e];
+    const double cut = base + level.extent[e];
     const LocalIndex other = level.slot[e];
     *out = {std::min(seeker.slot, other), std::max(seeker.slot, other)};
     out += static_cast<int>((dx * dx + dy * dy + dz * dz < cut * cut) & (out->first < owned_));

@@ -80,16 +80,6 @@ void AlignedDoubles::resize(std::size_t size) {
   size_ = size;
 }
 
-Vec3 Store::position(LocalIndex i) const noexcept {
-  const double* p = record(i) + layout_.position;
-  return {p[0], p[1], layout_.dimension == 3 ? p[2] : 0.0};
-}
-
-Vec3 Store::velocity(LocalIndex i) const noexcept {
-  const double* v = record(i) + layout_.velocity;
-  return {v[0], v[1], layout_.dimension == 3 ? v[2] : 0.0};
-}
-
 Vec3 Store::spin(LocalIndex i) const noexcept {
   if (!layout_.rotation) return {};
   const double* s = record(i) + layout_.spin;  // surface speeds

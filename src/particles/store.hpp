@@ -60,8 +60,14 @@ class Store {
   [[nodiscard]] const double* records() const noexcept { return records_.data(); }
   [[nodiscard]] double* record(LocalIndex i) noexcept { return records_.data() + offset(i); }
   [[nodiscard]] const double* record(LocalIndex i) const noexcept { return records_.data() + offset(i); }
-  [[nodiscard]] Vec3 position(LocalIndex i) const noexcept;  ///< [m]; z = 0 in 2D
-  [[nodiscard]] Vec3 velocity(LocalIndex i) const noexcept;  ///< [m/s]
+  [[nodiscard]] Vec3 position(LocalIndex i) const noexcept {  ///< [m]; z = 0 in 2D
+    const double* p = record(i) + layout_.position;
+    return {p[0], p[1], layout_.dimension == 3 ? p[2] : 0.0};
+  }
+  [[nodiscard]] Vec3 velocity(LocalIndex i) const noexcept {  ///< [m/s]
+    const double* v = record(i) + layout_.velocity;
+    return {v[0], v[1], layout_.dimension == 3 ? v[2] : 0.0};
+  }
   [[nodiscard]] Vec3 spin(LocalIndex i) const noexcept;  ///< omega [rad/s]; 0 when rotation is off; in 2D (0, 0, omega)
   [[nodiscard]] double radius(LocalIndex i) const noexcept { return record(i)[layout_.radius]; }  ///< [m]
   /// Of layouts that have it.

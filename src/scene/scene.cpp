@@ -19,6 +19,9 @@ namespace {
 constexpr double skin_per_radius = 0.1;
 // The same for the many small ones of a wide grading, by the mean radius.
 constexpr double skin_per_mean = 0.2;
+// Fast particles are listed up to so many skins farther each, in boxes that have so many columns an axis, or whose
+// columns are as wide anyway.
+constexpr double skins_a_margin = 2.0, plenty_of_columns = 10.0;
 
 [[noreturn]] void refuse(const input::Input& in, const std::string& words) {
   throw Error(ExitCode::bad_input, in.file + ": " + words);
@@ -233,7 +236,28 @@ geometry::Container container_of(const input::Container& container) {
   return box;
 }
 
+// What lists may allow a fast particle to move: as far as columns reach, to a bound. Half a skin for all where walls
+// move too, an implicit step may change any speed, or the pairs of the near field are many.
+double choose_margin(const Scene& scene) {
+  if (scene.in.confinement || scene.in.dynamics.theta > 0.0 || scene.in.near_field) return 0.5 * scene.skin;
+  const geometry::ColumnGrid grid = scene.columns();
+  double width = HUGE_VAL;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(scene.container.lateral_axes()); ++a) {
+    if (grid.counts()[a] > 1) width = std::min(width, grid.widths()[a]);
+  }
+  return std::clamp(0.5 * (width - scene.reach) * (1.0 - 1e-9), 0.5 * scene.skin, skins_a_margin * scene.skin);
+}
+
 }  // namespace
+
+geometry::ColumnGrid Scene::columns() const {
+  const double wide = reach + 2.0 * skins_a_margin * skin + in.layers.gap;
+  bool plenty = !in.confinement && !in.near_field && in.dynamics.theta == 0.0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(container.lateral_axes()); ++a) {
+    plenty = plenty && container.size[a] >= plenty_of_columns * wide;
+  }
+  return {container, room() * (plenty ? wide : column_width()), most_columns};
+}
 
 double safe_time_step(const input::Input& in, const Sizes& sizes) {
   return input::safe_step(in, range(sizes), in.particles.youngs_modulus);
@@ -254,6 +278,7 @@ Scene build(const input::Input& in) {
   choose_stages(in, scene);
   check_periodic(in, scene);
   scene.most_columns = most_columns(scene);
+  scene.most_margin = choose_margin(scene);
   scene.force_quantum = force_quantum(scene);
   scene.speed_bound = speed_bound(scene);
   return scene;

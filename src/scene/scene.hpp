@@ -40,12 +40,13 @@ struct Scene {
   Features features;
   Sizes sizes;                         ///< the size distribution: radius of (layer, particle), bounds
   std::vector<Sizes> component_sizes;  ///< of each component; empty if there is one only
-  double reach = 0.0;       ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
-  double skin = 0.0;        ///< [m] added to reach in neighbour lists; does not change any result
-  double time_step = 0.0;   ///< [s] of the final stage, and of the layers unless they have their own
-  Stage settling;           ///< of the layers
-  double relaxation = 0.0;  ///< [s] duration of the final stage
-  double wait = 0.0;        ///< [s] that it goes on at most until the bed is at rest
+  double reach = 0.0;        ///< [m] largest distance at which two centres interact: 2 r_max, or the near-field cut-off
+  double skin = 0.0;         ///< [m] what columns are wider than reach at least; does not change any result
+  double most_margin = 0.0;  ///< [m] neighbour lists allow one particle to move at most so far; likewise
+  double time_step = 0.0;    ///< [s] of the final stage, and of the layers unless they have their own
+  Stage settling;            ///< of the layers
+  double relaxation = 0.0;   ///< [s] duration of the final stage
+  double wait = 0.0;         ///< [s] that it goes on at most until the bed is at rest
   double confining_step = 0.0;    ///< [s] under the stress of [confinement]; 0 without
   double force_quantum = 0.0;     ///< [N] a power of two: forces are summed as integers of this unit
   double speed_bound = 0.0;       ///< [m/s] no particle of a valid run is as fast
@@ -53,8 +54,11 @@ struct Scene {
 
   /// Width the columns of the lateral grid need at least: reach + skin [m], and the gap of insertion.
   [[nodiscard]] double column_width() const noexcept { return reach + skin + in.layers.gap; }
-  /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns.
-  [[nodiscard]] geometry::ColumnGrid columns() const { return {container, room() * column_width(), most_columns}; }
+  /// The lateral grid: columns of that width, or wider ones where there would be more than most_columns, or where a
+  /// wide box has plenty: fast particles may then move farther before lists are made anew.
+  [[nodiscard]] geometry::ColumnGrid columns() const;
+  /// Two centres are in a neighbour list only if they are nearer than that [m]; columns are as wide at least.
+  [[nodiscard]] double list_range() const noexcept { return reach + 2.0 * most_margin; }
   /// Periodic axes that [confinement] shortens begin with columns so much wider than they need to be [-].
   [[nodiscard]] double room() const noexcept {
     return in.confinement && in.confinement->on_sides() ? 1.0 / (1.0 - most_shortening) : 1.0;

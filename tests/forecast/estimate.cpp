@@ -255,7 +255,7 @@ TEST_F(Estimates, RanksShareTheMemory) {
   const report::Estimate one = of(without_probe({.ranks = 1}), large);
   const report::Estimate ten = of(without_probe({.ranks = 10}), large);
   EXPECT_EQ(one.ghosts, 0.0);
-  EXPECT_NEAR(ten.ghosts, 2.0 * scene(large).column_width() / 1.0, 1e-12) << "slabs a metre thick";
+  EXPECT_NEAR(ten.ghosts, 2.0 * scene(large).list_range() / 1.0, 1e-12) << "slabs a metre thick";
   const double base = 51e6;
   EXPECT_NEAR(
       (static_cast<double>(ten.settling_bytes) - base) * 10.0 / (static_cast<double>(one.settling_bytes) - base),

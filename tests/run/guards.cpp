@@ -114,12 +114,12 @@ TEST_F(Guards, AForceBeyondTheSumsIsFoundInTheStep) {
   EXPECT_THAT(words(1), ::testing::HasSubstr("a force is beyond 1 N, the range of the sums; the fastest particle, 8:"));
 }
 
-TEST_F(Guards, OutsideIsFoundWithinHalfASkin) {
+TEST_F(Guards, OutsideIsFoundBeforeAMarginIsUsedUp) {
   if (double* r = record(7)) {
     r[1] = -0.021;  // no wall holds what is this far out
     r[5] = -1.0;
   }
-  const auto most = static_cast<std::int64_t>(0.5 * scene_.skin / (1.0 * 5e-5)) + 2;
+  const auto most = static_cast<std::int64_t>(scene_.most_margin / (1.0 * 5e-5)) + 2;
   EXPECT_THAT(words(most), ::testing::HasSubstr("particle 7 left the container: position (0.47, -0.02"));
 }
 
