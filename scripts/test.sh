@@ -5,4 +5,5 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 "$here/setup.sh" --plots --site
 "$here/build.sh" all
-ctest --test-dir "${BUILD:-$here/../build}" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
+# Twice as many at a time as there are cores: programs of a second that start MPI spend half of it waiting.
+ctest --test-dir "${BUILD:-$here/../build}" --output-on-failure --no-tests=error -j "$((2 * $(nproc)))" "$@"
