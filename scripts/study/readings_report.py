@@ -199,11 +199,16 @@ def section(data):
     flat = [one for one in readings if meets(one, FLAT)]
     nearest = min((one for one in flat if set(SPACE) <= set(one.measured)), key=lambda one: max(abs(one.off(c)) for c in SPACE))
     farthest = max(SPACE, key=lambda column: abs(nearest.off(column)))
+    best = min((one for one in readings if len(one.measured) == len(COLUMNS)), key=lambda one: one.score)
+    missed = max(COLUMNS, key=lambda column: abs(best.off(column)))
     scatters = sorted(tables.sd(one.values(c)) for one in readings for c in SPACE if len(one.values(c)) > 1)
     words = f"""The paper's Algorithm 1 leaves open where a layer's region begins, whether it ends at H_d, when the loop stops, and what V in eq. (22)
 is. `scripts/study/readings.py` tries them. {len(readings)} readings: **{len(meeting) or "none"} meets all eight columns within 2 sd**; {len(excluded)} are excluded, having a column that is off by more than
 2 + 2 / sqrt(packs) sd. {len(flat)} meet the four columns in 2D (seeds: {seeds_of(readings, FLAT)}); of them the nearest in 3D (seeds: {seeds_of(readings, SPACE)}) begins at {nearest.way.words}, is
-{STOPS[nearest.stop][1]}, V to {VOLUMES[nearest.volume]}, and has {tables.mean(nearest.values(farthest)):.3f} where the paper has {tables.mean(nearest.paper[farthest]):.3f} in {farthest[0]} with rotation {farthest[1]}: {abs(nearest.off(farthest)):.0f} of the paper's sd. Seeds of one
+{STOPS[nearest.stop][1]}, V to {VOLUMES[nearest.volume]}, and has {tables.mean(nearest.values(farthest)):.3f} where the paper has {tables.mean(nearest.paper[farthest]):.3f} in {farthest[0]} with rotation {farthest[1]}: {abs(nearest.off(farthest)):.0f} of the paper's sd.
+**Nearest of all** by the mean square of the eight means: begins at {best.way.words}, {STOPS[best.stop][1]}, V to {VOLUMES[best.volume]}; {best.met} of 8 columns
+within 2 sd, rms {best.score:.1f}, and at worst {tables.mean(best.values(missed)):.3f} where the paper has {tables.mean(best.paper[missed]):.3f} ({missed[0]}, rotation {missed[1]}: {abs(best.off(missed)):.1f} sd); it inserts {best.count(("5.1", "5.2"))}
+discs (the paper: typically 1300) and {best.count(("5.3", "5.4"))} spheres (typically 7500 to 8000). Seeds of one
 reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), so that few seeds tell. Below are the readings of which most columns were run, and of them the nearest:
 the number of packs in brackets, **bold** what is off by more than 2 sd; rms and worst are the distances of the means in the paper's standard deviations. "Discs" and
 "spheres" are particles inserted, from the least to the most. The row of all eight columns is packmpi as it is; "i" is an independent serial program
