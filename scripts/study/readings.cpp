@@ -94,7 +94,7 @@ struct Region {
 // Solid volume to insert [m3] (2D: m2) into a region so thick [m].
 double wanted(const scene::Scene& scene, const Reading& reading, double thickness) {
   const geometry::Container& box = scene.container;
-  if (!reading.of_centres) return scene.in.layers.fraction * box.floor_area() * thickness;
+  if (!reading.of_centres) return scene.in.layers.fraction * box.mean_area() * thickness;
   const double d = 2.0 * scene.sizes.mean();
   double volume = thickness - d;
   for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a)
@@ -130,8 +130,8 @@ std::int64_t insert(run::Bed& bed, std::uint32_t layer, double volume, const Reg
   for (const double radius : radii_of(scene, layer, volume)) {
     for (std::uint32_t attempt = 0; attempt < scene.in.layers.attempts; ++attempt) {
       const auto u = random::uniforms({scene.in.seed, random::Purpose::trial, layer, particle, attempt});
-      rsa::Sphere trial{scene.container.draw({u[0], u[1], u[2]}, radius), radius};
-      trial.centre[up] = std::max(region.bottom, 0.0) + radius + u[up] * (region.thickness - 2.0 * radius);
+      const rsa::Sphere trial{
+          scene.container.draw({u[0], u[1], u[2]}, radius, std::max(region.bottom, 0.0), region.thickness), radius};
       if (std::ranges::any_of(there, [&](const rsa::Sphere& s) { return metric.overlap(trial, s); })) continue;
       there.push_back(trial);
       bed.store.add(bed.progress.count + placed++, trial.centre, radius, {}, {});
@@ -149,7 +149,7 @@ double phi_below(const run::Bed& bed, double height) {
   double solid = 0.0;
   for (LocalIndex i = 0; i < bed.store.owned(); ++i)
     solid += geometry::volume_below(box.dimension, bed.store.radius(i), bed.store.position(i)[up], height);
-  return solid / (box.floor_area() * height);
+  return solid / (box.mean_area() * height);
 }
 
 void print_row(const run::Bed& bed, End end, std::uint32_t layer, std::int64_t inserted, const Region& region) {

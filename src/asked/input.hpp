@@ -12,7 +12,7 @@
 
 namespace packmpi::input {
 
-enum class VesselShape { box, cylinder };
+enum class VesselShape { box, cylinder, frustum, sphere, annulus };
 enum class Boundary { wall, periodic };
 enum class SizeDistribution {
   equal,
@@ -42,6 +42,8 @@ struct Container {
   int dimension = 3;  ///< 2 or 3
   VesselShape shape = VesselShape::box;
   double diameter = 0.0, height = 0.0;  ///< [m] inside, and the desired height H_d: of vessels that are no box
+  double bottom_diameter = 0.0, top_diameter = 0.0;  ///< [m] of a frustum, at the floor and at H_d
+  double inner_diameter = 0.0;                       ///< [m] of an annulus
   std::vector<double> size;        ///< [m] lateral extents, then the desired height H_d; `dimension` numbers. Of other
                                    ///< vessels than a box: what is around them, once the scene has been read
   std::vector<Boundary> boundary;  ///< one per lateral axis; of other vessels than a box: walls

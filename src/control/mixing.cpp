@@ -29,9 +29,11 @@ double left(const scene::Scene& scene, std::size_t k, double fraction, const Mix
     const double rest = whole - mixing.stratum_extent;
     return rest > rounding * whole ? rest : 0.0;
   }
-  const double a_metre =
-      scene.container.floor_area() * (fraction > 0.0 ? fraction : scene::expected_fraction(scene).value);
-  const double missing = *stratum.top * a_metre - mixing.extent;
+  const geometry::Container& vessel = scene.container;
+  const double share = fraction > 0.0 ? fraction : scene::expected_fraction(scene).value;
+  const double a_metre = (vessel.straight() ? vessel.mean_area() : vessel.area_at(*stratum.top)) * share;
+  const double wanted = vessel.straight() ? *stratum.top * a_metre : vessel.volume_between(0.0, *stratum.top) * share;
+  const double missing = wanted - mixing.extent;
   const bool complete = missing < near_enough * 2.0 * scene.sizes.mean() * a_metre;
   return complete || mixing.stratum_layers >= most_cuts ? 0.0 : missing;
 }

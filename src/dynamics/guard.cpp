@@ -92,8 +92,8 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
     }
   }
   constexpr std::array<const char*, geometry::most_surfaces> names{
-      "the floor",      "the wall x = 0", "the wall x = L",     "the wall y = 0",
-      "the wall y = B", "the lid",        "the cylinder's wall"};
+      "the floor", "the wall x = 0", "the wall x = L", "the wall y = 0",         "the wall y = B",
+      "the lid",   "the round wall", "the inner wall", "the wall above the cone"};
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const double depth = walls.particle[w] == i ? penetration_of(now, i, walls.wall[w]) : 0.0;

@@ -38,9 +38,9 @@ using Planes = std::array<geometry::Plane, geometry::most_planes>;
   return planes;
 }
 /// The same of its round walls.
-[[nodiscard]] constexpr geometry::RoundWalls round_of(const geometry::Container& container) {
+[[nodiscard]] inline geometry::RoundWalls round_of(const geometry::Container& container) {
   geometry::RoundWalls walls{};
-  for (std::size_t k = 0; k < walls.size(); ++k) walls[k] = container.round(k);
+  for (std::size_t k = 0; k < walls.size() && !container.is_box(); ++k) walls[k] = container.round(k);
   return walls;
 }
 

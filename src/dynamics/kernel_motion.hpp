@@ -7,13 +7,21 @@ namespace packmpi::dynamics::PACKMPI_KERNEL {
 /// Normal, towards the wall, and distance of entry p of the block: of a round wall, geometry::RoundWall::facing.
 template <Features F>
 PACKMPI_INLINE void put_round(const geometry::RoundWall& wall, Block<F>& b, int p, const double* x) {
-  const double along = x[0] - wall.axis[0], across = x[1] - wall.axis[1];
-  const double rho = root(along * along + across * across + geometry::RoundWall::tiny);
+  double d[3] = {};
+  for (int a = 0; a < F.dimension; ++a) d[a] = x[a] - wall.centre[static_cast<unsigned>(a)];
+  double square = wall.weight[0] * (d[0] * d[0]) + wall.weight[1] * (d[1] * d[1]);
+  double lean = wall.lean[0] * x[0] + wall.lean[1] * x[1];
+  if constexpr (F.dimension == 3) {
+    square = square + wall.weight[2] * (d[2] * d[2]);
+    lean = lean + wall.lean[2] * x[2];
+  }
+  const double rho = root(square + geometry::RoundWall::tiny);
   const double inverse = 1.0 / rho;
-  b.in[0][p] = along * inverse;
-  b.in[1][p] = across * inverse;
-  if constexpr (F.dimension == 3) b.in[2][p] = 0.0;
-  b.distance[p] = wall.offset - rho;
+  for (int a = 0; a < F.dimension; ++a) {
+    const auto c = static_cast<unsigned>(a);
+    b.in[a][p] = wall.radial * (wall.weight[c] * (d[a] * inverse)) + wall.lean[c];
+  }
+  b.distance[p] = wall.offset - wall.radial * rho - lean;
 }
 
 /// Fill entry p of the block for one particle at one wall: the wall is a second end whose fields are zero, but for its

@@ -60,15 +60,15 @@ struct Fitted {
 Fitted fit_height(const scene::Scene& scene, double particles, double layers, double fraction) {
   const double solid =
       (particles / layers - margin) * mean_volume(scene);  // of a layer: insertion overshoots by half a particle
-  return {.thickness = solid / (scene.in.layers.fraction * scene.container.floor_area()),
-          .height = (layers - margin) * solid / (fraction * scene.container.floor_area())};
+  return {.thickness = solid / (scene.in.layers.fraction * scene.container.mean_area()),
+          .height = (layers - margin) * solid / (fraction * scene.container.mean_area())};
 }
 
 // H_d below which so many particles fit (layers.region = "container").
 double fit_room(const scene::Scene& scene, double particles, double fraction) {
   const double target = scene.container.height();
   const double left = target - scene::height_below(scene, target);
-  return particles * mean_volume(scene) / (scene.container.floor_area() * fraction) + left;
+  return particles * mean_volume(scene) / (scene.container.mean_area() * fraction) + left;
 }
 
 // Area of the floor on which the scene's height takes so many particles.
@@ -140,6 +140,12 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
                        scene.in.particles.count));
   }
   unknown = unknown_of(question, scene.container.lateral_axes());
+  const bool known = scene.container.is_box() || scene.container.shape == geometry::Shape::cylinder;
+  if (!known && (question.particles || question.height || !question.sides.empty())) {
+    refuse(
+        "--particles, --height and --floor find the size of a box or a cylinder; of this vessel give the lengths "
+        "themselves (--set container.height=...)");
+  }
   if (question.height) size.back() = *question.height;
   for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
     size[axis] = question.sides[axis].value_or(size[axis]);
@@ -149,7 +155,7 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
   if (unknown == Unknown::floor) {
     for (int turn = 0; turn < turns; ++turn) {
       const double area = fit_floor(scene, particles, fraction_of(scene, question).value);
-      scale_floor(question, area, scene.container.floor_area(), size);
+      scale_floor(question, area, scene.container.mean_area(), size);
       scene = changed(source, {size_key(size)});
     }
     return scene;
@@ -241,7 +247,7 @@ report::LayerRow some_row() {
 pack::ContactCounts expected_contacts(const scene::Scene& scene, std::int64_t particles) {
   const geometry::Container& container = scene.container;
   const double touching = container.dimension == 3 ? 5.2 : 4.5;  // of a particle
-  const double walls = container.floor_area() + container.wall_area(container.height());
+  const double walls = container.mean_area() + container.wall_area(container.height());
   const double r = scene.sizes.mean();
   const double shadow = container.dimension == 3 ? geometry::volume(2, r) : 2.0 * r;
   return {.pairs = std::llround(0.5 * touching * static_cast<double>(particles)),

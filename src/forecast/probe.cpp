@@ -24,6 +24,7 @@ scene::Scene small_scene(const scene::Scene& scene) {
   input::Input in = scene.in;
   in.layers.region = input::RegionRule::open;  // whole layers are what most of a run is
   in.particles.count = 0;
+  if (in.container.shape != input::VesselShape::cylinder) in.container.shape = input::VesselShape::box;
   const auto axes = static_cast<std::size_t>(scene.container.lateral_axes());
   const double share = particles_wanted / static_cast<double>(scene::particles_a_layer(scene));
   const double factor = axes == 2 ? std::sqrt(share) : share;

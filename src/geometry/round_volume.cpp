@@ -1,6 +1,7 @@
 #include "geometry/round_volume.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -69,7 +70,88 @@ struct Cut {
   }
 };
 
+// What two discs have in common.
+double common(double s, double t, double b) {
+  if (!(s > 0.0) || !(t > 0.0) || b >= s + t) return 0.0;
+  if (b <= std::abs(s - t)) return volume(2, std::min(s, t));
+  return lens(s, t, b);
+}
+
+// Heights at which sections begin, end, or begin or end to cut each other; in order from the lowest to the highest.
+struct Breaks {
+  std::array<double, 12> at{};
+  std::size_t count = 0;
+  double low, high;
+
+  Breaks(double from, double to) : low(from), high(to) { at[count++] = from, at[count++] = to; }
+  void note(double z) {
+    if (z > low && z < high) at.at(count++) = z;
+  }
+  // Roots of a z^2 + 2 h z + c.
+  void note_roots(double a, double h, double c) {
+    if (a == 0.0) return note(h == 0.0 ? high : -0.5 * c / h);
+    const double square = h * h - a * c;
+    if (!(square >= 0.0)) return;
+    const double q = -(h + std::copysign(std::sqrt(square), h));
+    note(q / a);
+    if (q != 0.0) note(c / q);
+  }
+  template <class Section>
+  double sum(const Section& section) {
+    std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count));
+    double all = 0.0;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      const double middle = 0.5 * (at.at(k) + at.at(k + 1));
+      all += integral(section, at.at(k), middle) + integral(section, middle, at.at(k + 1));
+    }
+    return all;
+  }
+};
+
+double half_section(double r, double z) { return std::sqrt(std::max(0.0, (r - z) * (r + z))); }
+
 }  // namespace
+
+double volume_in_cone(double r, double b, double radius, double rise, double low, double high) noexcept {
+  low = std::clamp(low, -r, r);
+  high = std::clamp(high, -r, r);
+  if (!(low < high)) return 0.0;
+  Breaks breaks(low, high);
+  for (const double side : {radius - b, radius + b}) {
+    breaks.note_roots(1.0 + rise * rise, rise * side, side * side - r * r);
+  }
+  if (rise != 0.0) breaks.note(-radius / rise);
+  return breaks.sum([&](double z) { return common(half_section(r, z), radius + rise * z, b); });
+}
+
+double volume_in_ball(double r, double b, double up, double around, double low, double high) noexcept {
+  low = std::clamp(low, -r, r);
+  high = std::clamp(high, -r, r);
+  if (!(low < high) || !(around > 0.0)) return 0.0;
+  Breaks breaks(low, high);
+  const double a = (around - up) * (around + up) + (b - r) * (b + r);  // (a + 2 up z)^2 = 4 b^2 t^2
+  breaks.note_roots(4.0 * (up * up + b * b), 2.0 * up * (a - 2.0 * b * b),
+                    a * a - 4.0 * b * b * (around - up) * (around + up));
+  breaks.note(up - around);
+  breaks.note(up + around);
+  return breaks.sum([&](double z) { return common(half_section(r, z), half_section(around, z - up), b); });
+}
+
+double volume_away_from(const Container& vessel, Surface surface, double margin, const Vec3& x, double r, double low,
+                        double high) noexcept {
+  const RoundWall wall = vessel.round(static_cast<std::size_t>(surface) - most_planes);
+  const double across = x[0] - wall.centre[0], along = x[1] - wall.centre[1];
+  const double b = std::sqrt(across * across + along * along + RoundWall::tiny);
+  const double from = low - x[2], to = high - x[2];
+  if (wall.weight[2] > 0.0) return volume_in_ball(r, b, wall.centre[2] - x[2], wall.offset - margin, from, to);
+  if (wall.lean[2] != 0.0) {
+    const double rise = -(wall.lean[2] / wall.radial);
+    return volume_in_cone(r, b, (wall.offset - margin) / wall.radial + rise * x[2], rise, from, to);
+  }
+  if (wall.radial > 0.0) return volume_in_cylinder(r, b, wall.offset - margin, from, to);
+  const double whole = volume_below(3, r, x[2], high) - volume_below(3, r, x[2], low);
+  return whole - volume_in_cylinder(r, b, margin - wall.offset, from, to);
+}
 
 double volume_in_cylinder(double r, double b, double cylinder, double low, double high) noexcept {
   if (!(cylinder > 0.0) || b >= cylinder + r) return 0.0;

@@ -13,6 +13,7 @@
 #include "comm/petsc.hpp"
 #include "input/grading.hpp"
 #include "input/radius_range.hpp"
+#include "input/vessel.hpp"
 #include "input/words.hpp"
 #include "tables/rhythm.hpp"
 
@@ -59,15 +60,21 @@ struct Case {
     for (int axis = 0; axis + 1 < in.container.dimension; ++axis) {
       count *= in.container.size[static_cast<std::size_t>(axis)] / r;
     }
-    return boxed() ? count : 0.25 * std::numbers::pi * count;
+    const auto& size = in.container.size;
+    return boxed() ? count : count * (container_of(in.container).mean_area() / (size[0] * size[1]));
   }
+  [[nodiscard]] bool is(VesselShape shape) const { return in.container.shape == shape; }
   [[nodiscard]] bool boxed() const { return in.container.shape == VesselShape::box; }
   /// The key of an extent of the container.
   [[nodiscard]] std::string extent_key(std::size_t axis) const {
     if (boxed()) return fmt::format("container.size[{}]", axis);
-    return axis + 1 == in.container.size.size() ? "container.height" : "container.diameter";
+    return axis + 1 == in.container.size.size() ? "container.height" : room_key();
   }
-  [[nodiscard]] const char* room_key() const { return boxed() ? "container.size" : "container.diameter"; }
+  [[nodiscard]] const char* room_key() const {
+    if (!is(VesselShape::frustum)) return boxed() ? "container.size" : "container.diameter";
+    return in.container.bottom_diameter < in.container.top_diameter ? "container.top_diameter"
+                                                                    : "container.bottom_diameter";
+  }
 };
 
 /// The share of a Gaussian, lognormal or Weibull distribution that falls into [min, max].
@@ -171,6 +178,36 @@ void check_fit(const Case& scene) {
     scene.refuse("layers.thickness",
                  fmt::format("{:g} m is less than the largest particle, {:g} m across; make layers thicker",
                              scene.in.layers.thickness, diameter));
+  }
+}
+
+/// The largest particle at both ends of a frustum, and what only some vessels have.
+void check_vessel(const Case& scene) {
+  const Container& c = scene.in.container;
+  const double diameter = 2.0 * scene.largest();
+  if (scene.is(VesselShape::sphere) && c.height > c.diameter) {
+    scene.refuse("container.height", fmt::format("{:g} m is above container.diameter = {:g} m, the top of the sphere; "
+                                                 "lower it",
+                                                 c.height, c.diameter));
+  }
+  if (scene.is(VesselShape::annulus)) {
+    const double gap = 0.5 * (c.diameter - c.inner_diameter);
+    if (!(gap >= diameter)) {
+      scene.refuse("container.inner_diameter",
+                   fmt::format("{:g} m leaves {:g} m between the walls, less than the largest particle, {:g} m across; "
+                               "make it smaller",
+                               c.inner_diameter, gap, diameter));
+    }
+  }
+  if (!scene.is(VesselShape::frustum)) return;
+  const geometry::Container frustum = container_of(c);
+  for (const bool top : {false, true}) {
+    const double height = top ? c.height - scene.largest() : scene.largest();
+    if (frustum.ring(height, scene.largest()).outer > 0.0) continue;
+    scene.refuse(top ? "container.top_diameter" : "container.bottom_diameter",
+                 fmt::format("{:g} m is too narrow for the largest particle, {:g} m across, to lie at the {}; make it "
+                             "larger, or the walls steeper",
+                             top ? c.top_diameter : c.bottom_diameter, diameter, top ? "top" : "floor"));
   }
 }
 
@@ -420,7 +457,8 @@ void check_petsc(const Case& scene) {
 void check_shape(const Input& in, const Document& document) {
   const Case scene{in, document};
   if (scene.boxed() || !scene.plane()) return;
-  scene.refuse("container.shape", "\"cylinder\" is a vessel in 3D; give dimension = 3, or shape = \"box\"");
+  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in 3D; give dimension = 3, or shape = \"box\"",
+                                              word(in.container.shape)));
 }
 
 void check_radii(const Input& in, const Document& document) { check_distribution({in, document}); }
@@ -428,6 +466,7 @@ void check_radii(const Input& in, const Document& document) { check_distribution
 void check(const Input& in, const Document& document) {
   const Case scene{in, document};
   check_fit(scene);
+  check_vessel(scene);
   check_fraction(scene);
   check_counts(scene);
   check_resolution(scene);

@@ -82,8 +82,13 @@ Key only(double value, Key key) {
 bool is(const Input& in, SizeDistribution one) { return in.particles.radius.distribution == one; }
 
 constexpr Condition boxed{"shape = \"box\"", [](const Input& in) { return in.container.shape == VesselShape::box; }};
-constexpr Condition round{"shape = \"cylinder\"",
-                          [](const Input& in) { return in.container.shape == VesselShape::cylinder; }};
+constexpr Condition vessel{"shapes other than \"box\"", [](const Input& in) { return !boxed.holds(in); }};
+constexpr Condition frustum{"shape = \"frustum\"",
+                            [](const Input& in) { return in.container.shape == VesselShape::frustum; }};
+constexpr Condition annulus{"shape = \"annulus\"",
+                            [](const Input& in) { return in.container.shape == VesselShape::annulus; }};
+constexpr Condition round{"shape = \"cylinder\", \"sphere\" or \"annulus\"",
+                          [](const Input& in) { return vessel.holds(in) && !frustum.holds(in); }};
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
 constexpr Condition gaussian{"distribution = \"gaussian\"",
                              [](const Input& in) { return is(in, SizeDistribution::gaussian); }};
@@ -143,11 +148,16 @@ std::vector<Key> container_keys() {
     whole("container.dimension", at(container, &Container::dimension), between(2, 3), "3",
           "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
     word("container.shape", at(container, &Container::shape), "box",
-          "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2 (doc/vessels.md)."),
+          "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2; \"frustum\": a cone without its tip, "
+          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders (doc/vessels.md)."),
     when(boxed, reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
           "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D. Of a cylinder [D, D, H_d] stands for diameter and height.")),
     when(round, real("container.diameter", at(container, &Container::diameter), length, above(0), mandatory, "Diameter inside.")),
-    when(round, real("container.height", at(container, &Container::height), length, above(0), mandatory, "The height H_d to be filled.")),
+    when(frustum, real("container.bottom_diameter", at(container, &Container::bottom_diameter), length, above(0), mandatory, "Diameter inside at the floor.")),
+    when(frustum, real("container.top_diameter", at(container, &Container::top_diameter), length, above(0), mandatory,
+          "Diameter inside at the height H_d. A frustum that widens goes on above H_d as a cylinder, one that narrows as the cone that it is.")),
+    when(annulus, real("container.inner_diameter", at(container, &Container::inner_diameter), length, above(0), mandatory, "Diameter of the cylinder inside, seen from outside.")),
+    when(vessel, real("container.height", at(container, &Container::height), length, above(0), mandatory, "The height H_d to be filled.")),
     when(boxed, reals("container.boundary", at(container, &Container::boundary), Count::lateral_axes, plain, any, "wall",
           "How each lateral axis ends. There is always a floor; the top is open.")),
   };

@@ -17,6 +17,7 @@
 #include "input/mixture.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
+#include "input/vessel.hpp"
 #include "tables/known_names.hpp"
 
 namespace packmpi::input {
@@ -202,11 +203,15 @@ void take_size_of_cylinder(Document& document) {
   document.erase("container.size");
 }
 
-/// What is around a vessel that is no box; its sides are walls.
-void take_vessel(Container& container) {
-  if (container.shape == VesselShape::box) return;
-  container.size = {container.diameter, container.diameter, container.height};
-  container.boundary = {Boundary::wall, Boundary::wall};
+/// Nothing has room far above H_d where the walls close in: layers end there.
+void take_region(const Document& document, Input& in) {
+  if (!container_of(in.container).closes() || insertion_alone(in) || in.layers.region == RegionRule::container) return;
+  if (document.find("layers.region") != nullptr) {
+    fail(document.place("layers.region"), "layers.region",
+         "this vessel narrows towards its top, where layers above H_d have no room; give \"container\", or leave it "
+         "out");
+  }
+  in.layers.region = RegionRule::container;
 }
 
 /// What is said of radii, in the names of the scene.
@@ -315,6 +320,7 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
     if (in.components.empty()) check_radii(in, document);
     take_mixture(mixture, document, in);
     apply_preset(document, in);
+    take_region(document, in);
     check(in, document);
   } catch (const Error& error) {
     const std::string words = error.what();

@@ -46,11 +46,12 @@ struct Specimen {
 [[nodiscard]] Profile density_profile(const Specimen& pack, int axis);
 
 /// Solid fraction of the bulk of a round vessel by the distance from its wall, in shells a twentieth of a mean diameter
-/// thick (the last, around the axis, what is left); and of all that is at least `from_walls` [m] away from it, three
-/// mean diameters. Spheres are cut by the shells and by the bulk's planes, to 1e-9 of a radius cubed. Collective. Cost:
-/// about 0.1 ms a particle.
+/// thick (the last, around the axis, what is left), of an annulus from the inner one, too; and of all that is at least
+/// `from_walls` [m] away from its side walls, three mean diameters. Spheres are cut by the shells and by the bulk's
+/// planes, to 1e-9 of a radius cubed. Collective. Cost: about 0.1 ms a particle.
 struct RadialProfile {
-  Profile profile;  ///< empty: of a box, or of no bulk
+  Profile profile;     ///< empty: of a box, or of no bulk
+  Profile from_inner;  ///< of an annulus
   double from_walls = 0.0;
   double core = 0.0;  ///< 0: the vessel is too narrow for one
 };

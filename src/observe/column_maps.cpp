@@ -17,7 +17,7 @@ ColumnNumbering numbering(const scene::Scene& scene) {
   ColumnNumbering columns;
   double width = width_in_diameters * 2.0 * scene.sizes.mean();
   const int axes = scene.container.lateral_axes();
-  const double wanted = scene.container.floor_area() / (axes == 2 ? width * width : width);
+  const double wanted = scene.container.mean_area() / (axes == 2 ? width * width : width);
   if (wanted > most_columns) width *= axes == 2 ? std::sqrt(wanted / most_columns) : wanted / most_columns;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     columns.lengths[axis] = scene.container.size[axis];
@@ -77,21 +77,22 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
   return terms;
 }
 
-/// Floor [m2] of a column inside a round vessel, from 32 x 32 points: within a percent of a column; 0 if it is less
-/// than an eighth of the column.
+/// Volume [m3] of a column inside a round vessel up to H_d, from 32 x 32 points, at 32 heights if its walls are not
+/// straight: within a percent of a column; 0 if it is less than an eighth of the column.
 double room_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
   constexpr int side = 32;
   const std::int64_t row = column / maps.counts[0];
   const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(row);
+  const int floors = box.straight() ? 1 : side, points = side * side * floors;
   int inside = 0;
-  for (int k = 0; k < side * side; ++k) {
-    const int line = k / side;
+  for (int k = 0; k < points; ++k) {
+    const int line = k / side % side, floor = k / (side * side);
     const double x = (ix + (k % side + 0.5) / side) * maps.widths[0];
     const double y = (iy + (line + 0.5) / side) * maps.widths[1];
-    if (box.holds(x, y, 0.0)) ++inside;
+    if (box.holds({x, y, (floor + 0.5) / floors * box.height()}, 0.0)) ++inside;
   }
-  if (inside < side * side / 8) return 0.0;
-  return maps.widths[0] * maps.widths[1] * inside / (side * side);
+  if (inside < points / 8) return 0.0;
+  return maps.widths[0] * maps.widths[1] * inside / points * box.height();
 }
 
 }  // namespace
@@ -112,7 +113,7 @@ ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, co
   if (!box.is_box()) {
     const std::int64_t first = comm.sum_below(std::ssize(maps.solid_fraction));
     for (std::size_t k = 0; k < maps.solid_fraction.size(); ++k) {  // of a sliver nothing can be said
-      const double volume = room_in(box, maps, first + static_cast<std::int64_t>(k)) * box.height();
+      const double volume = room_in(box, maps, first + static_cast<std::int64_t>(k));
       maps.solid_fraction[k] = volume > 0.0 ? maps.solid_fraction[k] / volume : 0.0;
       maps.vertical_stress[k] = volume > 0.0 ? maps.vertical_stress[k] / volume : 0.0;
     }

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <voro++/voro++.hh>
 
-#include "base/elementary.hpp"
 #include "geometry/container.hpp"
 #include "geometry/volume.hpp"
 #include "observe/around.hpp"
@@ -13,28 +11,10 @@
 namespace packmpi::observe {
 namespace {
 
-// A round wall near x, as planes that touch it a twentieth of a radian apart: too much by a thousandth at most of what
-// lies beside it.
-void cut_by_mantle(const geometry::Container& box, const Vec3& x, double range, voro::voronoicell& cell) {
+// A round wall near x, as planes that touch it.
+void cut_by_walls(const geometry::Container& box, const Vec3& x, double range, voro::voronoicell& cell) {
   if (box.is_box()) return;
-  const geometry::RoundWall wall = box.round(0);
-  const double rho = wall.from_axis(x);
-  if (wall.offset - rho > range) return;
-  constexpr int planes = 62;  // half way around
-  constexpr double step = std::numbers::pi / planes;
-  const bool on_axis = rho < 1e-12 * wall.offset;  // then any direction will do
-  const double along = on_axis ? 1.0 : (x[0] - wall.axis[0]) / rho;
-  const double across = on_axis ? 0.0 : (x[1] - wall.axis[1]) / rho;
-  for (int k = -planes; k < planes; ++k) {
-    const double angle = std::abs(k) * step;
-    const double sine = std::copysign(elementary::sine(angle), k);
-    const double quarter = 0.5 * std::numbers::pi;
-    const double cosine = angle > quarter ? -elementary::cosine(std::numbers::pi - angle) : elementary::cosine(angle);
-    const double away = wall.offset - rho * cosine;  // from x to this plane
-    if (away > range) continue;
-    const double nx = along * cosine - across * sine, ny = across * cosine + along * sine;
-    cell.plane(nx, ny, 0.0, 2.0 * away);
-  }
+  box.touching_planes(x, range, [&](const Vec3& n, double away) { cell.plane(n[0], n[1], n[2], 2.0 * away); });
 }
 
 // Volume of the cell of particle i [m3], 2D: [m2]; none if particles beyond the range might cut it.
@@ -52,7 +32,7 @@ std::optional<double> cell_volume(const Specimen& pack, LocalIndex i, std::span<
   }
   voro::voronoicell cell;
   cell.init(low[0], high[0], low[1], high[1], low[2], high[2]);
-  cut_by_mantle(box, x, pack.range, cell);
+  cut_by_walls(box, x, pack.range, cell);
   for (const LocalIndex j : neighbours) {
     const Vec3 d = geometry::separation(box, x, pack.store.position(j));
     const double rj = pack.store.radius(j);

@@ -14,19 +14,16 @@ constexpr double bins_a_diameter = 50.0;
 // The room in which every centre has its whole shell inside the pack.
 struct Interior {
   std::array<double, 3> low{}, high{};
-  geometry::Container box;  // round: x and y reach at least `margin` from its wall
+  geometry::Container box;  // round: at least `margin` from its side walls
   double margin = 0.0;
   [[nodiscard]] bool contains(const Vec3& x, int dimension) const {
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
       if (!(x[a] >= low[a] && x[a] < high[a])) return false;
     }
-    return box.holds(x[0], x[1], margin);
+    return box.holds(x, margin);
   }
   [[nodiscard]] double volume(int dimension) const {
-    if (!box.is_box()) {
-      const double r = std::max(0.0, box.radius() - margin);
-      return std::numbers::pi * (r * r) * std::max(0.0, high[2] - low[2]);
-    }
+    if (!box.is_box()) return box.room_between(margin, low[2], high[2]);
     double v = 1.0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) v *= std::max(0.0, high[a] - low[a]);
     return v;
@@ -38,8 +35,9 @@ Interior interior_of(const Specimen& pack, double range) {
   const auto v = static_cast<std::size_t>(box.vertical());
   Interior in{.box = box, .margin = range};
   for (std::size_t a = 0; a < static_cast<std::size_t>(box.lateral_axes()); ++a) {
-    in.low[a] = box.periodic[a] ? 0.0 : range;
-    in.high[a] = box.periodic[a] ? box.size[a] : box.size[a] - range;
+    const double wall = box.periodic[a] || !box.is_box() ? 0.0 : range;
+    in.low[a] = wall;
+    in.high[a] = box.size[a] - wall;
   }
   in.low[v] = std::max(range, pack.bulk.low);
   in.high[v] = std::min(pack.surface - range, pack.bulk.high);

@@ -45,16 +45,16 @@ Profile density_profile(const Specimen& pack, int axis) {
     }
   }
   profile.values = comm::exact_sums(pack.comm, terms);
-  if (!vertical && !box.is_box()) {  // a slab between two chords
+  if (!box.is_box() && !(vertical && box.straight())) {
     for (std::size_t k = 0; k < bins; ++k) {
-      const double low = static_cast<double>(k) * profile.width;
-      const auto below = [&](double x) { return geometry::volume_below(2, box.radius(), box.radius(), x); };
-      const double room = (below(low + profile.width) - below(low)) * pack.bulk.depth();
+      const double low = static_cast<double>(k) * profile.width, high = low + profile.width;
+      const double room =
+          vertical ? box.volume_between(low, high) : box.slab(a, low, high, pack.bulk.low, pack.bulk.high);
       profile.values[k] = room > 0.0 ? profile.values[k] / room : 0.0;
     }
     return profile;
   }
-  const double section = vertical ? box.floor_area() : box.floor_area() / box.size[a] * pack.bulk.depth();
+  const double section = vertical ? box.mean_area() : box.mean_area() / box.size[a] * pack.bulk.depth();
   for (double& value : profile.values) value /= section * profile.width;
   return profile;
 }

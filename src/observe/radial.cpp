@@ -8,56 +8,96 @@
 namespace packmpi::observe {
 namespace {
 
+using geometry::Surface;
+
 constexpr double shells_a_diameter = 20.0;
 constexpr double core_in_diameters = 3.0;
 constexpr std::size_t most_shells = 1 << 14;
 
-double from_axis(const geometry::Container& vessel, const Vec3& x) { return vessel.round(0).from_axis(x); }
-
-// Solid volume [m3] of the bulk inside each of some coaxial cylinders, whose radii descend. Collective.
-std::vector<double> inside(const Specimen& pack, const std::vector<double>& radii) {
-  const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
-  std::vector<std::vector<double>> terms(radii.size());
+// Solid volume [m3] of the bulk that is away from a wall by at least each of some distances, which ascend. Collective.
+std::vector<double> solid_away(const Specimen& pack, Surface surface, const std::vector<double>& margins) {
+  const geometry::Container& vessel = pack.scene.container;
+  std::vector<std::vector<double>> terms(margins.size());
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
-    const double low = pack.bulk.low - x[vertical], high = pack.bulk.high - x[vertical];
-    if (low >= r || high <= -r) continue;
-    const double b = from_axis(pack.scene.container, x);
-    for (std::size_t k = 0; k < radii.size() && radii[k] > b - r; ++k) {
-      terms[k].push_back(geometry::volume_in_cylinder(r, b, radii[k], low, high));
+    if (pack.bulk.low - x[2] >= r || pack.bulk.high - x[2] <= -r) continue;
+    const double reach = vessel.facing(surface, x).distance + r;
+    for (std::size_t k = 0; k < margins.size() && margins[k] < reach; ++k) {
+      terms[k].push_back(geometry::volume_away_from(vessel, surface, margins[k], x, r, pack.bulk.low, pack.bulk.high));
     }
   }
   return comm::exact_sums(pack.comm, terms);
 }
 
+// The farthest that a point of the bulk can be from a wall [m].
+double farthest(const Specimen& pack, Surface surface) {
+  const geometry::Container& vessel = pack.scene.container;
+  if (vessel.shape == geometry::Shape::annulus) return vessel.radius() - vessel.core;
+  const Vec3 axis{0.5 * vessel.size[0], 0.5 * vessel.size[1], 0.0};
+  const auto at = [&](double z) { return vessel.facing(surface, {axis[0], axis[1], z}).distance; };
+  if (vessel.straight()) return vessel.radius();
+  const double low = pack.bulk.low, high = pack.bulk.high;
+  const double middle = std::clamp(vessel.radius(), low, high);  // a sphere's
+  return std::max({at(low), at(high), vessel.shape == geometry::Shape::sphere ? at(middle) : 0.0});
+}
+
+// Of the bulk's room what is between two distances from a wall [m3].
+double shell(const Specimen& pack, Surface surface, double from, double to) {
+  const geometry::Container& vessel = pack.scene.container;
+  const double low = pack.bulk.low, high = pack.bulk.high;
+  if (!vessel.straight()) return vessel.room_between(from, low, high) - vessel.room_between(to, low, high);
+  const bool inner = surface == Surface::inner;
+  const double a = inner ? vessel.core + to : vessel.radius() - from;
+  const double b = inner ? vessel.core + from : vessel.radius() - to;
+  return std::numbers::pi * (a - b) * (a + b) * (high - low);
+}
+
+// Collective.
+Profile profile_from(const Specimen& pack, Surface surface) {
+  const double diameter = 2.0 * pack.scene.sizes.mean(), end = farthest(pack, surface);
+  const double width = std::max(diameter / shells_a_diameter, end / static_cast<double>(most_shells));
+  std::vector<double> margins;
+  for (std::size_t k = 0; static_cast<double>(k) * width < end; ++k) margins.push_back(static_cast<double>(k) * width);
+  const std::size_t shells = margins.size();
+  margins.push_back(end);
+  const std::vector<double> volumes = solid_away(pack, surface, margins);
+  Profile profile{.from = 0.0, .width = width, .values = {}};
+  for (std::size_t k = 0; k < shells; ++k) {
+    const double room = shell(pack, surface, margins[k], margins[k + 1]);
+    profile.values.push_back(room > 0.0 ? (volumes[k] - volumes[k + 1]) / room : 0.0);
+  }
+  return profile;
+}
+
+// Solid fraction of what is at least so far from all side walls; 0 if that is narrower than a diameter. Collective.
+double core_of(const Specimen& pack, double margin) {
+  const geometry::Container& vessel = pack.scene.container;
+  const double diameter = 2.0 * pack.scene.sizes.mean(), depth = pack.bulk.depth();
+  const double room = vessel.room_between(margin, pack.bulk.low, pack.bulk.high);
+  std::vector<double> margins{margin};
+  if (vessel.shape == geometry::Shape::annulus) {
+    const double gap = vessel.radius() - vessel.core;
+    if (gap - 2.0 * margin < diameter) return 0.0;
+    margins.push_back(gap - margin);  // what the inner wall takes
+  } else if (vessel.straight() ? vessel.radius() - margin < 0.5 * diameter
+                               : room < 0.25 * std::numbers::pi * diameter * diameter * depth) {
+    return 0.0;
+  }
+  std::vector<double> volumes = solid_away(pack, Surface::mantle, margins);
+  volumes.push_back(0.0);
+  return (volumes[0] - volumes[1]) / room;
+}
+
 }  // namespace
 
 RadialProfile radial_profile(const Specimen& pack) {
-  const geometry::Container& vessel = pack.scene.container;
   RadialProfile result;
-  const double depth = pack.bulk.depth();
-  if (vessel.is_box() || !(depth > 0.0)) return result;
-  const double diameter = 2.0 * pack.scene.sizes.mean();
-  const double around = vessel.radius();
-  const double width = std::max(diameter / shells_a_diameter, around / static_cast<double>(most_shells));
-  std::vector<double> radii;  // of the shells' outer sides, from the wall inwards; then the axis
-  for (std::size_t k = 0; static_cast<double>(k) * width < around; ++k) {
-    radii.push_back(around - static_cast<double>(k) * width);
-  }
-  const std::size_t shells = radii.size();
-  radii.push_back(0.0);
-  const double core = around - core_in_diameters * diameter;
-  std::vector<double> volumes = inside(pack, radii);
-  result.profile = {.from = 0.0, .width = width, .values = {}};
-  for (std::size_t k = 0; k < shells; ++k) {
-    const double room = std::numbers::pi * (radii[k] - radii[k + 1]) * (radii[k] + radii[k + 1]) * depth;
-    result.profile.values.push_back((volumes[k] - volumes[k + 1]) / room);
-  }
-  result.from_walls = core_in_diameters * diameter;
-  if (core >= 0.5 * diameter) {
-    result.core = inside(pack, {core})[0] / (std::numbers::pi * core * core * depth);
-  }
+  if (pack.scene.container.is_box() || !(pack.bulk.depth() > 0.0)) return result;
+  result.profile = profile_from(pack, Surface::mantle);
+  if (pack.scene.container.has(Surface::inner)) result.from_inner = profile_from(pack, Surface::inner);
+  result.from_walls = core_in_diameters * 2.0 * pack.scene.sizes.mean();
+  result.core = core_of(pack, result.from_walls);
   return result;
 }
 

@@ -21,10 +21,11 @@ ColumnNumbering make_columns(const scene::Scene& scene) {
   return columns;
 }
 
+constexpr int most_turns = 6;      // until a surface is found that is as high as its own room makes it
 constexpr int samples_a_side = 8;  // of a column: points that tell how much of it is in a round vessel
 
-/// How many of the column's points centres can be at; all of them in a box.
-std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, std::int64_t column) {
+/// At how many of the column's points centres can be that lie at a height [m]; all of them in a box.
+std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, std::int64_t column, double height) {
   const std::array<std::int64_t, 2> at{column % columns.counts[0], column / columns.counts[0]};
   std::int64_t room = 0;
   for (int k = 0; k < samples_a_side * samples_a_side; ++k) {
@@ -35,15 +36,16 @@ std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, 
       x[axis] =
           (static_cast<double>(at[axis]) + share) * columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
     }
-    if (scene.container.holds(x[0], x[1], scene.sizes.mean())) ++room;
+    if (scene.container.holds({x[0], x[1], height}, scene.sizes.mean())) ++room;
   }
   return room;
 }
 
 /// Collective. The same of all columns; each rank looks at its share of them.
-std::int64_t room_of_all(const comm::Comm& comm, const scene::Scene& scene, const ColumnNumbering& columns) {
+std::int64_t room_of_all(const comm::Comm& comm, const scene::Scene& scene, const ColumnNumbering& columns,
+                         double height) {
   std::int64_t room = 0;
-  for (std::int64_t k = comm.rank(); k < columns.size(); k += comm.size()) room += room_of(scene, columns, k);
+  for (std::int64_t k = comm.rank(); k < columns.size(); k += comm.size()) room += room_of(scene, columns, k, height);
   return comm.sum(room);
 }
 
@@ -88,16 +90,25 @@ double surface_height(const comm::Comm& comm, const particles::Store& store, con
 double surface_height(const comm::Comm& comm, std::span<const particles::Store* const> stores,
                       const scene::Scene& scene, std::int64_t most_stored) {
   const ColumnNumbering columns = make_columns(scene);
-  std::vector<ColumnValue> tops = highest_tops(stores, scene.container.vertical(), columns);
-  auto all = static_cast<double>(columns.size());
-  if (!scene.container.is_box()) {  // the mean over the vessel: a column counts as much as it has room for centres
-    for (ColumnValue& top : tops) top.value *= static_cast<double>(room_of(scene, columns, top.column));
-    all = static_cast<double>(std::max<std::int64_t>(1, room_of_all(comm, scene, columns)));
-  }
+  const std::vector<ColumnValue> tops = highest_tops(stores, scene.container.vertical(), columns);
   const bool few = columns.size() <= most_stored;
-  const double sum =
-      comm::exact_sum(comm, few ? heights_on_grid(comm, tops, columns) : heights_by_mail(comm, tops, columns));
-  return sum / all;
+  const auto sum = [&](const std::vector<ColumnValue>& terms) {
+    return comm::exact_sum(comm, few ? heights_on_grid(comm, terms, columns) : heights_by_mail(comm, terms, columns));
+  };
+  if (scene.container.is_box()) return sum(tops) / static_cast<double>(columns.size());
+  // The mean over the vessel: a column counts as much as it has room for centres, at the surface that is looked for.
+  double surface = 0.0;
+  for (const ColumnValue& top : tops) surface = std::max(surface, top.value);
+  surface = comm.max(surface);
+  const int turns = scene.container.straight() ? 1 : most_turns;
+  for (int turn = 0; turn < turns; ++turn) {
+    const double level = surface - scene.sizes.mean();
+    std::vector<ColumnValue> weighted = tops;
+    for (ColumnValue& top : weighted) top.value *= static_cast<double>(room_of(scene, columns, top.column, level));
+    const auto all = static_cast<double>(std::max<std::int64_t>(1, room_of_all(comm, scene, columns, level)));
+    surface = sum(weighted) / all;
+  }
+  return surface;
 }
 
 }  // namespace packmpi::observe

@@ -82,6 +82,10 @@ std::string container_change(const input::Container& before, const input::Contai
     return fmt::format("a container of the shape \"{}\", the scene in one of the shape \"{}\"; give that of the pack",
                        input::word(before.shape), input::word(now.shape));
   }
+  const bool wall = now.bottom_diameter == before.bottom_diameter && now.top_diameter == before.top_diameter &&
+                    now.inner_diameter == before.inner_diameter;
+  const bool slope = now.shape != input::VesselShape::frustum || now.size.back() == before.size.back();
+  if (!wall || !slope) return "a vessel of other diameters or another height than the scene's; give those of the pack";
   for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
     if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;
     return fmt::format(

@@ -63,6 +63,7 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
   if (!a.radial.profile.values.empty()) {
     root["radial_profile"] = {{"from_wall", profile(a.radial.profile)},
                               {"core", {{"from_wall", a.radial.from_walls}, {"solid_fraction", a.radial.core}}}};
+    if (!a.radial.from_inner.values.empty()) root["radial_profile"]["from_inner_wall"] = profile(a.radial.from_inner);
   }
   root["local_density"] = {{"counted", a.local.counted},
                            {"left_out", a.local.left_out},

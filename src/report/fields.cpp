@@ -30,6 +30,9 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
                                   {"target_min_radius", "m", r.target_min_radius},
                                   {"target_max_radius", "m", r.target_max_radius}};
   if (r.shape != "box") fields.push_back({"shape", "", r.shape});
+  if (r.bottom_diameter > 0.0) fields.push_back({"bottom_diameter", "m", r.bottom_diameter});
+  if (r.top_diameter > 0.0) fields.push_back({"top_diameter", "m", r.top_diameter});
+  if (r.inner_diameter > 0.0) fields.push_back({"inner_diameter", "m", r.inner_diameter});
   if (r.target_particles > 0) fields.push_back({"target_particles", "", r.target_particles});
   if (r.density.on()) {
     fields.push_back({"target_density_key", "", r.density.key});

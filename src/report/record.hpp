@@ -91,13 +91,14 @@ struct RunRecord {
   std::string name, scene_file, effective_input;
   std::uint64_t seed = 0;
   int dimension = 3;
-  std::string shape = "box";          ///< of the container, as the scene calls it
-  Vec3 size{};                        ///< [m] container; of another shape than a box the prism around it
-  double target_height = 0.0;         ///< [m] H_d
-  double target_fraction = 0.0;       ///< phi_0 of each insertion
-  std::int64_t target_particles = 0;  ///< 0: as many as the height takes
-  bool insertion_alone = false;       ///< target_fraction is that of the container, and the height no target
-  std::string start;                  ///< what was taken over from another pack, and what not; "": there was none
+  std::string shape = "box";  ///< of the container, as the scene calls it
+  Vec3 size{};                ///< [m] container; of another shape than a box the prism around it
+  double bottom_diameter = 0.0, top_diameter = 0.0, inner_diameter = 0.0;  ///< [m] of vessels that have them
+  double target_height = 0.0;                                              ///< [m] H_d
+  double target_fraction = 0.0;                                            ///< phi_0 of each insertion
+  std::int64_t target_particles = 0;                                       ///< 0: as many as the height takes
+  bool insertion_alone = false;  ///< target_fraction is that of the container, and the height no target
+  std::string start;             ///< what was taken over from another pack, and what not; "": there was none
   double target_mean_radius = 0.0, target_sd_radius = 0.0, target_min_radius = 0.0, target_max_radius = 0.0;  ///< [m]
   DensityTarget density;
   // achieved (*)

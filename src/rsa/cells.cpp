@@ -10,7 +10,8 @@ namespace {
 
 // About four cells a particle where the layer is thin on particles; they need not be flatter than the layer is thick.
 double cell_width(const scene::Scene& scene, const LayerRegion& region, std::int64_t asked, double diameter) {
-  const double floor = scene.container.floor_area() / static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
+  const double floor = scene.container.mean_area(region.bottom, region.thickness) /
+                       static_cast<double>(4 * std::max<std::int64_t>(asked, 1));
   const double share = floor * region.thickness;
   const bool deep = scene.container.dimension == 3;
   double width = deep ? elementary::cube_root(share) : std::sqrt(share);

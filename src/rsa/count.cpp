@@ -64,7 +64,8 @@ class Tally {
 };
 
 std::int64_t needed_for_fraction(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region) {
-  const double target = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
+  const double target =
+      scene.in.layers.fraction * scene.container.mean_area(region.bottom, region.thickness) * region.thickness;
   const int power = scene.container.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
   if (!(target > 0.0) || !(mean > 0.0))

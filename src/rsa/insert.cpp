@@ -55,7 +55,8 @@ std::string advice(const scene::Scene& scene, bool early) {
 [[noreturn]] void give_up(const comm::Comm& comm, const scene::Scene& scene, const LayerRegion& region,
                           const Insertion& got, int size_class, std::uint32_t attempts) {
   const std::uint32_t limit = attempt_limit(scene);
-  const double share = got.solid_volume / (scene.container.floor_area() * region.thickness);
+  const double share =
+      got.solid_volume / (scene.container.mean_area(region.bottom, region.thickness) * region.thickness);
   std::string where;
   if (!scene.sizes.equal()) {
     where = fmt::format(" at size class {} of {}, from the largest down", size_class + 1, size_classes);

@@ -74,7 +74,7 @@ inline constexpr int size_classes = 8;
                                const std::function<void()>& between_volleys = {});
 
 /// The trial of a particle: a uniform position with the whole sphere inside region and container (any lateral position
-/// on periodic axes). [m]
+/// on periodic axes), evenly over where it fits. [m]
 [[nodiscard]] Vec3 trial(const scene::Scene& scene, const LayerRegion& region, std::uint64_t particle, double radius,
                          std::uint32_t attempt);
 

@@ -58,7 +58,8 @@ Portion portion_by_volume(const comm::Comm& comm, const scene::Scene& scene, int
 
 void plan_layer(const comm::Comm& comm, const scene::Scene& scene, double fraction, control::Mixing& mixing,
                 LayerRegion& region) {
-  const double whole = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
+  const double whole =
+      scene.in.layers.fraction * scene.container.mean_area(region.bottom, region.thickness) * region.thickness;
   const double room = control::room_in_stratum(scene, fraction, mixing);
   const double extent = std::min(whole, room);
   const scene::Recipe recipe = scene::recipe_of(scene, static_cast<std::size_t>(mixing.stratum));

@@ -55,11 +55,11 @@ void remove_checkpoints(const Files& files) {
 
 double expected_particles(const scene::Scene& scene) {
   const double height = scene.container.height() + scene.in.layers.thickness;
-  const double solid = (scene.container.dimension == 3 ? densest : 0.91) * scene.container.floor_area() * height;
+  const double solid = (scene.container.dimension == 3 ? densest : 0.91) * scene.container.mean_area() * height;
   const double mean =
       geometry::volume(scene.container.dimension, 1.0) * scene.sizes.curve().moment(scene.container.dimension);
   const input::Layers& layers = scene.in.layers;
-  const double a_layer = layers.fraction * scene.container.floor_area() * layers.thickness / mean + 1.0;
+  const double a_layer = layers.fraction * scene.container.mean_area() * layers.thickness / mean + 1.0;
   const double full = solid / mean;
   if (scene.in.particles.count > 0) return static_cast<double>(scene.in.particles.count);
   return layers.maximum > 0 ? std::min(full, static_cast<double>(layers.maximum) * a_layer) : full;

@@ -49,7 +49,8 @@ void insert_layer(Bed& bed, Attendant& attendant) {
   row.attempts = got.trials;
   row.total = at.count;
   row.target_fraction = scene.in.layers.fraction;
-  row.achieved_fraction = got.solid_volume / (scene.container.floor_area() * region.thickness);
+  row.achieved_fraction =
+      got.solid_volume / (scene.container.mean_area(region.bottom, region.thickness) * region.thickness);
   row.region_bottom = region.bottom;
 }
 

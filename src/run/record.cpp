@@ -84,6 +84,8 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.dimension = scene.container.dimension;
   record.shape = input::word(scene.in.container.shape);
   record.size = scene.container.size;
+  record.bottom_diameter = 2.0 * scene.container.ends[0], record.top_diameter = 2.0 * scene.container.ends[1];
+  record.inner_diameter = 2.0 * scene.container.core;
   record.target_height = scene.container.height();
   record.target_fraction = scene.in.layers.fraction;
   record.target_particles = scene.in.particles.count;

@@ -63,9 +63,11 @@ input::Input smaller(const scene::Scene& scene) {
       sample_particles * volume / (scene::expected_fraction(scene).value * in.container.size.back());  // 2D: a length
   const double side = std::max(
       {dimension == 3 ? std::sqrt(area) : area, side_in_mean * diameter, side_in_columns * scene.column_width()});
-  if (side < in.container.size.front()) in.container.shape = input::VesselShape::box;  // a cylinder's middle
+  if (!scene.container.straight()) in.container.size = {side, side, in.container.size.back()};
+  const bool middle = side < scene.container.size[0] || !scene.container.straight();
+  if (middle) in.container.shape = input::VesselShape::box;  // that of a round vessel
   for (std::size_t axis = 0; axis < in.container.boundary.size(); ++axis) {
-    if (!(side < in.container.size[axis])) continue;
+    if (!(side < in.container.size[axis]) && scene.container.straight()) continue;
     in.container.size[axis] = side;
     in.container.boundary[axis] = input::Boundary::periodic;
   }
@@ -75,7 +77,7 @@ input::Input smaller(const scene::Scene& scene) {
 // By the walls that the scene has and the sample has not; at equal heights, whose surfaces make up for each other.
 double wall_scale(scene::Scene scene, const scene::Scene& sample) {
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  scene.container.size[vertical] = sample.container.size[vertical];
+  if (scene.container.straight()) scene.container.size[vertical] = sample.container.size[vertical];
   scene.in.particles.count = 0;
   return scene::expected_fraction(scene).value / scene::expected_fraction(sample).value;
 }

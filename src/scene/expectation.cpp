@@ -64,16 +64,6 @@ double by_sizes(const Scene& scene, const Shape& shape) {
   return 1.0 + std::min(1.0, shape.deviation / no_crystal) * (least - 1.0);
 }
 
-// Perimeter over cross-section [1/m].
-double walls_over_area(const geometry::Container& container) {
-  if (!container.is_box()) return container.wall_area(1.0) / container.floor_area();
-  double sum = 0.0;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(container.lateral_axes()); ++axis) {
-    if (!container.periodic[axis]) sum += 2.0 / container.size[axis];
-  }
-  return sum;
-}
-
 // The share of the bulk's fraction that walls and surface leave.
 double by_borders(const Scene& scene) {
   const double mean = 2.0 * scene.sizes.mean();
@@ -85,7 +75,7 @@ double by_borders(const Scene& scene) {
       if (!scene.container.periodic[axis]) left -= missing_at_walls * mean / scene.container.size[axis];
     }
   } else {
-    left -= missing_at_walls * mean * 0.5 * walls_over_area(scene.container);
+    left -= missing_at_walls * mean * 0.5 * scene.container.walls_over_room();
   }
   const double missing = scene.sizes.equal() ? missing_at_surface : missing_at_uneven_surface;
   left *= 1.0 - std::min(0.5, missing * largest / scene.container.height());
@@ -103,6 +93,31 @@ double uneven_volumes(const Scene& scene) {
   return scene.sizes.curve().moment(2 * scene.container.dimension) / (mean * mean);
 }
 
+// Of a vessel that is not straight: layer upon layer, each as high as its region has room for. Full: up to H_d.
+struct Stack {
+  std::int64_t layers = 0;
+  double solid = 0.0, surface = 0.0;  // [m3], [m]
+  bool full = false;
+};
+Stack stack_up(const Scene& scene, double fraction) {
+  const input::Layers& layers = scene.in.layers;
+  const bool clipped = layers.region == input::RegionRule::container;
+  const double target = scene.container.height(), diameter = 2.0 * scene.sizes.largest();
+  const double wanted =
+      scene.in.particles.count > 0 ? static_cast<double>(scene.in.particles.count) * mean_volume(scene) : HUGE_VAL;
+  Stack stack;
+  double top = 0.0;
+  while (stack.layers < most_layers(scene) && stack.solid < wanted && !stack.full) {
+    const double thickness = clipped ? std::min(layers.thickness, target - top) : layers.thickness;
+    stack.solid += layers.fraction * scene.container.volume_between(top, top + thickness);
+    stack.surface = scene.container.level(stack.solid / fraction);
+    top = stack.surface + roughness * 2.0 * scene.sizes.mean();
+    ++stack.layers;
+    stack.full = clipped ? target - top < diameter : stack.surface >= target && wanted == HUGE_VAL;
+  }
+  return stack;
+}
+
 }  // namespace
 
 BedFraction expected_fraction(const Scene& scene) {
@@ -118,7 +133,7 @@ BedFraction expected_fraction(const Scene& scene) {
 }
 
 std::int64_t particles_a_layer(const Scene& scene) {
-  const double solid = scene.in.layers.fraction * scene.container.floor_area() * scene.in.layers.thickness;
+  const double solid = scene.in.layers.fraction * scene.container.mean_area() * scene.in.layers.thickness;
   const double needed = solid / mean_volume(scene);
   // The last one overshoots: the larger a particle, the more often it is the last, so by half of its mean square.
   const double overshoot = 0.5 * uneven_volumes(scene);
@@ -143,10 +158,11 @@ std::optional<Fines> fines(const Scene& scene) {
 }
 
 double rise_of_layer(const Scene& scene, double fraction) {
-  return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.container.floor_area() * fraction);
+  return static_cast<double>(particles_a_layer(scene)) * mean_volume(scene) / (scene.container.mean_area() * fraction);
 }
 
 std::int64_t expected_layers(const Scene& scene, double fraction) {
+  if (!scene.container.straight() && !insertion_alone(scene.in)) return stack_up(scene, fraction).layers;
   const auto count = static_cast<double>(scene.in.particles.count);
   const double layers = count > 0.0 ? std::ceil(count / static_cast<double>(particles_a_layer(scene)))
                                     : std::ceil(scene.container.height() / rise_of_layer(scene, fraction) - 1e-9);
@@ -163,10 +179,23 @@ Filling expected_filling(const Scene& scene, double fraction) {
   const std::int64_t count = scene.in.particles.count;
   if (count > 0 || insertion_alone(scene.in)) {
     const std::int64_t particles = count > 0 ? count : particles_a_layer(scene);
-    const double solid = static_cast<double>(particles) * mean_volume(scene) / scene.container.floor_area();
+    const double solid = static_cast<double>(particles) * mean_volume(scene) / scene.container.mean_area();
+    const double extent = solid * scene.container.mean_area() / fraction;
+    const double height = scene.container.straight() ? solid / fraction : scene.container.level(extent);
     return {.layers = expected_layers(scene, fraction),
             .particles = particles,
-            .height = insertion_alone(scene.in) ? target : solid / fraction};
+            .height = insertion_alone(scene.in) ? target : height};
+  }
+  if (!scene.container.straight()) {
+    const Stack stack = stack_up(scene, fraction);
+    const bool clipped = stack.full && scene.in.layers.region == input::RegionRule::container;
+    const double height = clipped ? height_below(scene, target) : stack.surface;
+    const double solid = scene.container.volume_between(0.0, height) * fraction;
+    const double a_metre = scene.container.area_at(height) * fraction / mean_volume(scene);
+    return {.layers = stack.layers,
+            .particles = std::max<std::int64_t>(1, std::llround(solid / mean_volume(scene))),
+            .height = height,
+            .uncertainty = clipped ? std::llround(a_metre * scene.sizes.largest()) : 0};
   }
   if (scene.in.layers.region == input::RegionRule::open) {
     const std::int64_t layers = expected_layers(scene, fraction);
@@ -181,7 +210,7 @@ Filling expected_filling(const Scene& scene, double fraction) {
     top = surface + roughness * 2.0 * scene.sizes.mean();
     ++filling.layers;
   }
-  const double a_metre = scene.container.floor_area() * fraction / mean_volume(scene);  // particles
+  const double a_metre = scene.container.mean_area() * fraction / mean_volume(scene);  // particles
   const bool full = target - top < 2.0 * scene.sizes.largest();
   filling.height = full ? height_below(scene, target) : surface;
   filling.particles = std::max<std::int64_t>(1, std::llround(a_metre * filling.height));
@@ -198,7 +227,7 @@ double finished_height(const Scene& scene) {
 
 double pressing_depth(const Scene& scene, double depth) {
   constexpr double lateral = 0.5;  // share of the vertical stress
-  const double rate = lateral * scene.in.contact.wall_friction * walls_over_area(scene.container);
+  const double rate = lateral * scene.in.contact.wall_friction * scene.container.walls_over_room();
   return rate * depth > 1e-6 ? (1.0 - elementary::exponential(-rate * depth)) / rate : depth;
 }
 

@@ -94,16 +94,18 @@ std::int64_t most_layers(const Scene& scene) {
   const input::Input& in = scene.in;
   if (insertion_alone(in)) return 1;
   if (in.layers.maximum > 0) return in.layers.maximum;
-  if (in.particles.count > 0) {
+  if (in.particles.count > 0 && scene.container.straight()) {
     constexpr double uneven = 1.5;  // of the volumes that happen to be drawn
     const int power = scene.container.dimension;
     const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
-    const double a_layer = in.layers.fraction * scene.container.floor_area() * in.layers.thickness;
+    const double a_layer = in.layers.fraction * scene.container.mean_area() * in.layers.thickness;
     return static_cast<std::int64_t>(std::ceil(uneven * static_cast<double>(in.particles.count) * mean / a_layer)) + 2;
   }
   const input::Layers& layers = in.layers;
+  const double sloping = scene.container.straight() ? 1.0 : 2.0;  // layers above have less room than the bed below them
   const auto whole =
-      static_cast<std::int64_t>(std::ceil(in.container.size.back() / (layers.fraction * layers.thickness))) + 2;
+      static_cast<std::int64_t>(std::ceil(sloping * in.container.size.back() / (layers.fraction * layers.thickness))) +
+      2;
   if (layers.region == input::RegionRule::open) return whole + layers_a_cut * std::ssize(in.strata);
   // Each of those that end at H_d leaves 1 - phi_0 of the room at most, down to a diameter; twice that, as they may
   // hold less than phi_0.

@@ -77,9 +77,11 @@ Ownership::Ownership(const comm::Comm& comm, const geometry::ColumnGrid& grid, i
   if (!grid.box().is_box()) rebalance(room());
 }
 
-// How much of each of this rank's columns is inside a round vessel: the first particles come where there is room.
+// How much of each of this rank's columns is inside a round vessel up to H_d: particles come where there is room.
 std::vector<std::int64_t> Ownership::room() const {
   constexpr int side = 4;
+  const geometry::Container& vessel = grid_.box();
+  const int floors = vessel.straight() ? 1 : 8;
   const auto [wx, wy] = grid_.widths();
   std::vector<std::int64_t> points;
   points.reserve(columns_.size());
@@ -87,9 +89,10 @@ std::vector<std::int64_t> Ownership::room() const {
     const geometry::ColumnIndex row = column / grid_.counts()[0];
     const auto ix = static_cast<double>(column % grid_.counts()[0]), iy = static_cast<double>(row);
     std::int64_t inside = 0;
-    for (int k = 0; k < side * side; ++k) {
-      const int line = k / side;
-      if (grid_.box().holds((ix + (k % side + 0.5) / side) * wx, (iy + (line + 0.5) / side) * wy, 0.0)) ++inside;
+    for (int k = 0; k < side * side * floors; ++k) {
+      const int line = k / side % side, floor = k / (side * side);
+      const double z = (floor + 0.5) / floors * vessel.height();
+      if (vessel.holds({(ix + (k % side + 0.5) / side) * wx, (iy + (line + 0.5) / side) * wy, z}, 0.0)) ++inside;
     }
     points.push_back(inside);
   }

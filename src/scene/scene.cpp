@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
+#include "input/vessel.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
 #include "scene/mixture.hpp"
@@ -182,7 +183,7 @@ std::int64_t most_columns(const Scene& scene) {
   constexpr double always = 0x1p16, countable = 0x1p30, a_particle = 4.0;
   const int power = scene.container.dimension;
   const double mean = geometry::volume(power, 1.0) * scene.sizes.curve().moment(power);
-  const double particles = scene.in.layers.fraction * scene.container.floor_area() * scene.in.layers.thickness / mean;
+  const double particles = scene.in.layers.fraction * scene.container.mean_area() * scene.in.layers.thickness / mean;
   const double wanted = a_particle * particles;
   return static_cast<std::int64_t>(wanted < countable ? std::max(wanted, always) : countable);  // NaN: countable
 }
@@ -225,17 +226,6 @@ int size_levels(const Sizes& sizes) {
   return levels;
 }
 
-geometry::Container container_of(const input::Container& container) {
-  geometry::Container box;
-  box.dimension = container.dimension;
-  std::ranges::copy(container.size, box.size.begin());
-  for (std::size_t axis = 0; axis < container.boundary.size(); ++axis) {
-    box.periodic[axis] = container.boundary[axis] == input::Boundary::periodic;
-  }
-  if (container.shape == input::VesselShape::cylinder) box.shape = geometry::Shape::cylinder;
-  return box;
-}
-
 // What lists may allow a fast particle to move: as far as columns reach, to a bound. Half a skin for all where walls
 // move too, an implicit step may change any speed, or the pairs of the near field are many.
 double choose_margin(const Scene& scene) {
@@ -266,7 +256,7 @@ double safe_time_step(const input::Input& in, const Sizes& sizes) {
 Scene build(const input::Input& in) {
   Scene scene;
   scene.in = in;
-  scene.container = container_of(in.container);
+  scene.container = input::container_of(in.container);
   scene.features = features_of(in);
   scene.sizes = Sizes(in.particles.radius, in.seed);
   for (const input::Component& of : in.components) scene.component_sizes.emplace_back(of.particles.radius, in.seed);

@@ -55,10 +55,10 @@ TEST(Shortest, IsAntisymmetricAndShort) {
 }
 
 TEST(Container, Axes) {
-  EXPECT_EQ(box3(2.0, 3.0, false, false).floor_area(), 6.0);
+  EXPECT_EQ(box3(2.0, 3.0, false, false).mean_area(), 6.0);
   EXPECT_EQ(box3(2.0, 3.0, false, false).height(), 1.0);
   EXPECT_EQ(box3(2.0, 3.0, false, false).lateral_axes(), 2);
-  EXPECT_EQ(box2(2.0, false).floor_area(), 2.0);
+  EXPECT_EQ(box2(2.0, false).mean_area(), 2.0);
   EXPECT_EQ(box2(2.0, false).vertical(), 1);
 }
 

@@ -100,7 +100,7 @@ Container cylinder(double diameter, double height) {
 
 TEST(Cylinder, HasOneRoundWallAndAFloor) {
   const Container vessel = cylinder(2.0, 3.0);
-  EXPECT_DOUBLE_EQ(vessel.floor_area(), pi);
+  EXPECT_DOUBLE_EQ(vessel.mean_area(), pi);
   EXPECT_DOUBLE_EQ(vessel.volume_between(1.0, 3.0), 2.0 * pi);
   EXPECT_DOUBLE_EQ(vessel.wall_area(3.0), 6.0 * pi);
   EXPECT_TRUE(vessel.has(Surface::floor));
@@ -128,7 +128,7 @@ TEST(Cylinder, PlacesAreDrawnEvenly) {
   constexpr int side = 200;
   for (int i = 0; i < side; ++i) {
     for (int k = 0; k < side; ++k) {
-      const Vec3 x = vessel.draw({(i + 0.5) / side, (k + 0.5) / side, 0.0}, radius);
+      const Vec3 x = vessel.draw({(i + 0.5) / side, (k + 0.5) / side, 0.0}, radius, 0.0, 1.0);
       const double a = x[0] - 1.0, b = x[1] - 1.0;
       const double share = (a * a + b * b) / (reach * reach);
       ASSERT_LE(share, 1.0 + 1e-12);

@@ -18,6 +18,7 @@
 #include "input/read.hpp"
 #include "input/restitution.hpp"
 #include "input/time_step.hpp"
+#include "input/vessel.hpp"
 #include "tables/rhythm.hpp"
 #include "tables/sieve_table.hpp"
 #include "tables/units.hpp"
@@ -639,6 +640,26 @@ TEST(GoodInput, WhatIsSetOfACylinderWins) {
   EXPECT_EQ(size(by_names, "container.diameter=0.6"), (std::vector<double>{0.6, 0.6, 0.5}));
   EXPECT_EQ(size(by_size, "container.height=0.4"), (std::vector<double>{0.8, 0.8, 0.4}));
   EXPECT_EQ(size(least, "container.shape=box"), (std::vector<double>{1.0, 1.0, 0.5}));
+}
+
+TEST(GoodInput, OtherVesselsHaveLengthsOfTheirOwn) {
+  const Input hopper = parse(
+      in_vessel("shape = \"frustum\"\nbottom_diameter = 0.3\ntop_diameter = \"80 cm\"\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(hopper.container.shape, VesselShape::frustum);
+  EXPECT_EQ(hopper.container.size, (std::vector<double>{0.8, 0.8, 0.5}));
+  EXPECT_EQ(container_of(hopper.container).ends, (std::array<double, 2>{0.15, 0.4}));
+  EXPECT_EQ(hopper.layers.region, RegionRule::open);
+  const Input heap =
+      parse(in_vessel("shape = \"frustum\"\nbottom_diameter = 0.8\ntop_diameter = 0.3\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(heap.layers.region, RegionRule::container) << "it narrows";
+  const Input ball = parse(in_vessel("shape = \"sphere\"\ndiameter = 0.8\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(ball.container.size, (std::vector<double>{0.8, 0.8, 0.5}));
+  EXPECT_EQ(ball.layers.region, RegionRule::container);
+  const Input ring =
+      parse(in_vessel("shape = \"annulus\"\ndiameter = 0.8\ninner_diameter = 0.3\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(container_of(ring.container).core, 0.15);
+  for (const Input& in : {hopper, heap, ball, ring})
+    EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective);
 }
 
 TEST(GoodInput, InsertionAloneAsksForLittle) {

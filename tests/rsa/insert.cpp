@@ -221,7 +221,9 @@ TEST(Insert, ClippedLayerTakesTheFirstOfItsParticles) {
     EXPECT_GT(got.inserted, got.target / 2);
     EXPECT_EQ(comm.sum(std::int64_t{store.owned()}), got.inserted);
     scene::Scene less = scene;
-    less.in.layers.fraction = got.solid_volume / (scene.container.floor_area() * region.thickness) * (1.0 - 1e-12);
+    less.in.layers.fraction = got.solid_volume /
+                              (scene.container.mean_area(region.bottom, region.thickness) * region.thickness) *
+                              (1.0 - 1e-12);
     const oracle::Rsa serial = oracle::insert(less, region, 500);
     EXPECT_EQ(std::ssize(serial.placed), got.inserted);
     expect_same_spheres(store, ownership, comm.rank(), serial, region.first_id);

@@ -64,7 +64,8 @@ TEST_P(Region, EndsAtTheHeight) {
       EXPECT_LE(bed.store.position(i)[up], target - bed.store.radius(i) + 1e-15);
       EXPECT_GE(bed.store.position(i)[up], region.bottom + bed.store.radius(i) - 1e-15);
     }
-    const double wanted = scene.in.layers.fraction * scene.container.floor_area() * region.thickness;
+    const double wanted =
+        scene.in.layers.fraction * scene.container.mean_area(region.bottom, region.thickness) * region.thickness;
     if (got.inserted == got.target) {
       EXPECT_GE(got.solid_volume, wanted * (1.0 - 1e-12));
     } else {

@@ -132,7 +132,10 @@ void Cloud::list(Dice& dice) {
     };
     near(a[dimension - 1], neighbor::Wall::floor);
     if (plan.round && !features.periodic) {
-      near(0.5 * size[0] - std::hypot(a[0] - 0.5 * size[0], a[1] - 0.5 * size[0]), neighbor::Wall::mantle);
+      for (std::size_t k = 0; k < geometry::most_round; ++k) {
+        near(round_walls()[k].facing({a[0], a[1], dimension == 3 ? a[2] : 0.0}).distance,
+             static_cast<neighbor::Wall>(geometry::most_planes + k));
+      }
       continue;
     }
     if (!periodic[0]) near(a[0], neighbor::Wall::x_low), near(size[0] - a[0], neighbor::Wall::x_high);
@@ -232,6 +235,16 @@ std::vector<double> Cloud::stored(GlobalId first, GlobalId second) const {
   return values;
 }
 
+// A cylinder, a thin one seen from outside, and what has a point, a slope and a radius.
+geometry::RoundWalls Cloud::round_walls() const {
+  const double half = 0.5 * size[0];
+  const geometry::RoundWall mantle{{half, half, 0.0}, half}, inner{{half, half, 0.0}, -0.3 * radius, -1.0};
+  const double up = features.dimension == 3 ? 1.0 : 0.0;
+  return {mantle, inner,
+          geometry::RoundWall{
+              {half, half, up * half}, 1.06 * half, 0.8, {1.0, 1.0, up}, {0.0, 0.6 * (up - 1.0), -0.6 * up}}};
+}
+
 dynamics::StepData Cloud::data() {
   return {.records = records.data(),
           .owned = plan.owned,
@@ -254,7 +267,7 @@ dynamics::StepData Cloud::data() {
           .size = size,
           .periodic = periodic,
           .planes = dynamics::planes_of({features.dimension, size, periodic}),
-          .round = {geometry::RoundWall{{0.5 * size[0], 0.5 * size[0]}, 0.5 * size[0]}},
+          .round = round_walls(),
           .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
           .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }

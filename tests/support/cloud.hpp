@@ -31,7 +31,7 @@ struct CloudPlan {
   double skin = 0.1;            ///< [r] pairs within R + skin are listed
   LocalIndex window = 1 << 30;  ///< list only pairs of owned with second - first below this
   double ring_room = 1.0;       ///< slots of the ring, at least this times the window
-  bool round = false;           ///< walls stand around as a cylinder's mantle, where no axis is periodic
+  bool round = false;           ///< round walls stand around, where no axis is periodic
   bool near_field = false;      ///< the ring holds every particle, prefilled
   std::uint64_t seed = 1;
 };
@@ -69,6 +69,7 @@ struct Cloud {
   void list(Dice& dice);
   void make_ring(Dice& dice);
   void remember(Dice& dice);
+  [[nodiscard]] geometry::RoundWalls round_walls() const;
 };
 
 }  // namespace packmpi::support

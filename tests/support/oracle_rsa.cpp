@@ -20,8 +20,8 @@ bool try_place(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& resul
 }  // namespace
 
 std::int64_t particles_needed(const scene::Scene& scene, const rsa::LayerRegion& region) {
-  const long double target =
-      static_cast<long double>(scene.in.layers.fraction) * scene.container.floor_area() * region.thickness;
+  const long double target = static_cast<long double>(scene.in.layers.fraction) *
+                             scene.container.mean_area(region.bottom, region.thickness) * region.thickness;
   long double sum = 0.0L;
   std::uint64_t n = 0;
   while (sum < target) sum += geometry::volume(scene.container.dimension, scene.sizes.draw(region.layer, n++));

@@ -273,12 +273,20 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, neig
     case neighbor::Wall::lid:
       n[up] = 1.0, distance = data.planes[5].offset - i.x[up];
       break;
-    case neighbor::Wall::mantle: {
-      const geometry::RoundWall& round = data.round[0];
-      const double rho = std::sqrt((i.x[0] - round.axis[0]) * (i.x[0] - round.axis[0]) +
-                                   (i.x[1] - round.axis[1]) * (i.x[1] - round.axis[1]) + tiny);
-      n = {(i.x[0] - round.axis[0]) * (1.0 / rho), (i.x[1] - round.axis[1]) * (1.0 / rho), 0.0};
-      distance = round.offset - rho;
+    case neighbor::Wall::mantle:
+    case neighbor::Wall::inner:
+    case neighbor::Wall::collar: {
+      const geometry::RoundWall& round = data.round[static_cast<std::size_t>(wall) - geometry::most_planes];
+      double square = 0.0, lean = 0.0;
+      for (std::size_t a = 0; a <= up; ++a) {
+        square += round.weight[a] * ((i.x[a] - round.centre[a]) * (i.x[a] - round.centre[a]));
+        lean += round.lean[a] * i.x[a];
+      }
+      const double rho = std::sqrt(square + tiny);
+      for (std::size_t a = 0; a <= up; ++a) {
+        n[a] = round.radial * (round.weight[a] * ((i.x[a] - round.centre[a]) * (1.0 / rho))) + round.lean[a];
+      }
+      distance = round.offset - round.radial * rho - lean;
       break;
     }
   }

@@ -1,0 +1,43 @@
+#include "input/vessel.hpp"
+
+#include <algorithm>
+
+namespace packmpi::input {
+
+void take_vessel(Container& container) {
+  if (container.shape == VesselShape::box) return;
+  const bool frustum = container.shape == VesselShape::frustum;
+  const double widest = frustum ? std::max(container.bottom_diameter, container.top_diameter) : container.diameter;
+  container.size = {widest, widest, container.height};
+  container.boundary = {Boundary::wall, Boundary::wall};
+}
+
+geometry::Container container_of(const Container& container) {
+  geometry::Container box;
+  box.dimension = container.dimension;
+  std::ranges::copy(container.size, box.size.begin());
+  for (std::size_t axis = 0; axis < container.boundary.size(); ++axis) {
+    box.periodic[axis] = container.boundary[axis] == Boundary::periodic;
+  }
+  switch (container.shape) {
+    case VesselShape::box:
+      break;
+    case VesselShape::cylinder:
+      box.shape = geometry::Shape::cylinder;
+      break;
+    case VesselShape::frustum:
+      box.shape = geometry::Shape::frustum;
+      box.ends = {0.5 * container.bottom_diameter, 0.5 * container.top_diameter};
+      break;
+    case VesselShape::sphere:
+      box.shape = geometry::Shape::sphere;
+      break;
+    case VesselShape::annulus:
+      box.shape = geometry::Shape::annulus;
+      box.core = 0.5 * container.inner_diameter;
+      break;
+  }
+  return box;
+}
+
+}  // namespace packmpi::input
