@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -105,6 +106,31 @@ void check_components(const ConvertRequest& request, const scene::Scene& scene) 
                   request.format, scene.in.components.size()));
 }
 
+/// Walls that are neither flat nor a cylinder seen from inside are carried by some formats only.
+void check_vessel(const ConvertRequest& request, const geometry::Container& vessel) {
+  using geometry::Shape;
+  struct Carried {
+    std::string_view format;
+    std::vector<Shape> shapes;
+  };
+  const std::array<Carried, 3> able{Carried{"lammps", {Shape::frustum, Shape::sphere, Shape::annulus}},
+                                    Carried{"liggghts", {Shape::annulus}},
+                                    Carried{"yade", {Shape::frustum, Shape::annulus}}};
+  constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
+  const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;
+  if (usual || std::ranges::find(without, request.format) != without.end()) return;
+  std::string names;
+  for (const Carried& one : able) {
+    if (std::ranges::find(one.shapes, vessel.shape) == one.shapes.end()) continue;
+    if (one.format == request.format) return;
+    names += fmt::format("{}{}", names.empty() ? "" : " or ", one.format);
+  }
+  refuse_request(
+      fmt::format("--to {}: the walls of this pack's vessel are not written for it; use {}, or csv, xyz, vtk or esys, "
+                  "which carry particles alone; or take a box or a cylinder out of it by --cut",
+                  request.format, names));
+}
+
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
 scene::Scene scene_of(const pack::PackFile& file) {
   try {
@@ -171,6 +197,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   const std::string file_of_cut = Cut::file_of(request.cut);
   const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
   const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene, surface);  // pure, as check_copies() is
+  if (!cut.on()) check_vessel(request, scene.container);
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });

@@ -129,15 +129,34 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
                            "smaller or move it",
                            low_[a], low_[a] + size_[a], "xyz"[a], room[a]));
   }
-  if (source_.is_box() || shape_ == Shape::surface) return;
-  const double around = source_.radius() + slack;
+  if (!source_.is_box() && shape_ != Shape::surface) check_round(words, slack);
+}
+
+// Sections of vessels are convex upwards but for their middle: if both ends of the specimen lie inside, all of it does.
+void Cut::check_round(const std::string& words, double slack) const {
+  if (shape_ == Shape::sphere) {
+    const double room = source_.from_sides(middle_);
+    if (room + slack >= 0.5 * size_[0]) return;
+    refuse_cut(words, fmt::format("its middle is {:g} m from the vessel's wall; make it smaller or move it", room));
+  }
+  const double low = low_[2], high = low_[2] + size_[2];
   const double x = std::abs(middle_[0] - source_.radius()), y = std::abs(middle_[1] - source_.radius());
-  const double farthest =
-      shape_ == Shape::box ? std::hypot(x + 0.5 * size_[0], y + 0.5 * size_[1]) : std::hypot(x, y) + 0.5 * size_[0];
-  if (farthest > around) {
-    refuse_cut(words, fmt::format("it reaches {:g} m from the axis of the cylinder, whose radius is {:g} m; make it "
+  const bool box = shape_ == Shape::box;
+  const double half = 0.5 * size_[0], across = 0.5 * size_[1];
+  const double farthest = box ? std::hypot(x + half, y + across) : std::hypot(x, y) + half;
+  const double around = std::min(source_.ring(low, 0.0).outer, source_.ring(high, 0.0).outer);
+  if (farthest > around + slack) {
+    refuse_cut(words, fmt::format("it reaches {:g} m from the axis of the {}, whose radius is {:g} m{}; make it "
                                   "smaller or move it",
-                                  farthest, source_.radius()));
+                                  farthest, source_.shape == geometry::Shape::cylinder ? "cylinder" : "vessel", around,
+                                  source_.straight() ? "" : " there"));
+  }
+  const double nearest =
+      box ? std::hypot(std::max(0.0, x - half), std::max(0.0, y - across)) : std::max(0.0, std::hypot(x, y) - half);
+  if (source_.has(geometry::Surface::inner) && nearest < source_.core - slack) {
+    refuse_cut(words, fmt::format("it reaches to {:g} m from the axis of the annulus, whose inner wall has a radius of "
+                                  "{:g} m; make it smaller or move it",
+                                  nearest, source_.core));
   }
 }
 
@@ -145,6 +164,9 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
 // at.
 void Cut::check_corners(const std::string& words) const {
   const double slack = 1e-12 * *std::ranges::max_element(source_.size);
+  if (source_.has(geometry::Surface::inner)) {
+    refuse_cut(words, "it may reach around the inner wall of the annulus; cut a box, a cylinder or a sphere");
+  }
   for (const Vec3& point : surface_->shell().points) {
     const Vec3 x{point[0] + origin_[0], point[1] + origin_[1], point[2] + origin_[2]};
     if (source_.is_box() || source_.beyond(x) <= slack) continue;

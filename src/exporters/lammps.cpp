@@ -58,6 +58,7 @@ std::string contact(const Specimen& s, double share, double friction) {
 /// A floor; over it a lid, which moves by the variable `lid` [m].
 std::string floor_and_lid(const Specimen& s, const std::string& law) {
   const char up = "xyz"[s.vertical()];
+  if (!s.has(geometry::Surface::floor)) return "";
   std::string text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
   const std::optional<double>& lid = s.scene.container.lid;
   if (!lid) return text;
@@ -72,11 +73,12 @@ std::string walls(const Specimen& s) {
   const std::string law = contact(s, share, in.contact.wall_friction);
   std::string text;
   if (s.round()) {
-    text = fmt::format(
-        "# the law of a curved wall is there that of spheres on its curvature: overlaps differ by a share of r / R\n"
-        "region          mantle cylinder z {1} {1} {1} INF INF side in units box\n"
-        "fix             wall_mantle all wall/gran/region granular {0} region mantle\n",
-        law, s.radius());
+    text =
+        "# the law of a curved wall is there that of spheres on its curvature: overlaps differ by a share of r / R\n";
+  }
+  for (const Region& region : round_regions(s)) {
+    text += region.line +
+            fmt::format("fix             wall_{0} all wall/gran/region granular {1} region {0}\n", region.name, law);
   }
   for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;

@@ -43,4 +43,34 @@ std::string boundary_words(const Specimen& s) {
   return words;
 }
 
+std::vector<Region> round_regions(const Specimen& s) {
+  using geometry::Surface;
+  std::vector<Region> regions;
+  if (!s.round()) return regions;
+  const double c = s.radius();
+  const auto cylinder = [&](const char* name, double radius, const char* side) {
+    regions.push_back({name, fmt::format("region          {} cylinder z {} {} {} INF INF side {} units box\n", name, c,
+                                         c, radius, side)});
+  };
+  switch (s.scene.container.shape) {
+    case geometry::Shape::frustum: {
+      const auto [height, radius] = cone_ends(s);
+      regions.push_back(
+          {"mantle",
+           fmt::format("region          mantle cone z {0} {0} {1} {2} {3} {4} side in units box open 1 open 2\n", c,
+                       radius.low, radius.high, height.low, height.high)});
+      break;
+    }
+    case geometry::Shape::sphere:
+      regions.push_back(
+          {"mantle", fmt::format("region          mantle sphere {0} {0} {0} {0} side in units box\n", c)});
+      break;
+    default:
+      cylinder("mantle", c, "in");
+  }
+  if (s.has(Surface::inner)) cylinder("inner", s.scene.container.core, "out");
+  if (s.has(Surface::collar)) cylinder("collar", s.scene.container.ends[1], "in");
+  return regions;
+}
+
 }  // namespace packmpi::exporters

@@ -19,4 +19,10 @@ void atom_row(Text& out, const Outgoing& particle, double density);
 /// " p f f": what the command boundary wants.
 [[nodiscard]] std::string boundary_words(const Specimen& specimen);
 
+/// LAMMPS: a region of a round vessel's wall, and its name.
+struct Region {
+  std::string name, line;
+};
+[[nodiscard]] std::vector<Region> round_regions(const Specimen& specimen);
+
 }  // namespace packmpi::exporters

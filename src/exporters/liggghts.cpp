@@ -55,12 +55,14 @@ std::string walls(const Specimen& s) {
       "{2}{3}\n";
   const int type = kinds(s) + 1;
   std::string text;
-  if (s.round()) {
-    text = fmt::format(
-        "fix             wall_mantle all wall/gran model hertz tangential ${{tangential}}{1} primitive type {2} "
-        "zcylinder {0} {0} {0}{3}\n",
-        s.radius(), rolling(s), type, limit(s));
-  }
+  const auto cylinder = [&](const char* name, double radius) {
+    text += fmt::format(
+        "fix             wall_{4} all wall/gran model hertz tangential ${{tangential}}{1} primitive type {2} "
+        "zcylinder {5} {0} {0}{3}\n",
+        s.radius(), rolling(s), type, limit(s), name, radius);
+  };
+  if (s.round()) cylinder("mantle", s.radius());
+  if (s.has(geometry::Surface::inner)) cylinder("inner", s.scene.container.core);
   for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (s.periodic(axis)) continue;
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s), type);

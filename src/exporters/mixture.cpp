@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "exporters/lammps_family.hpp"
 #include "exporters/law.hpp"
 
 namespace packmpi::exporters {
@@ -99,19 +100,20 @@ std::string lammps_pairs(const Specimen& s) {
 std::string lammps_walls(const Specimen& s) {
   std::string text;
   const double share = s.scene.in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
-  if (s.round())
-    text += fmt::format("region          mantle cylinder z {0} {0} {0} INF INF side in units box\n", s.radius());
+  for (const Region& region : round_regions(s)) text += region.line;
   for (int k = 0; k < components(s); ++k) {
     const std::string law = granular(s, scene::wall_material(s.scene.in, k), share);
     text += fmt::format("group           component{0} type {0}\n", k + 1);
-    if (s.round())
-      text += fmt::format("fix             wall_mantle_{0} component{0} wall/gran/region granular {1} region mantle\n",
-                          k + 1, law);
+    for (const Region& region : round_regions(s)) {
+      text += fmt::format("fix             wall_{2}_{0} component{0} wall/gran/region granular {1} region {2}\n", k + 1,
+                          law, region.name);
+    }
     for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
       if (s.periodic(axis)) continue;
       text += fmt::format("fix             wall_{0}_{1} component{1} wall/gran granular {2} {0}plane 0 {3}\n",
                           "xyz"[axis], k + 1, law, s.size[axis]);
     }
+    if (!s.has(geometry::Surface::floor)) continue;
     text += fmt::format("fix             floor_{0} component{0} wall/gran granular {1} {2}plane 0 NULL\n", k + 1, law,
                         "xyz"[s.vertical()]);
   }

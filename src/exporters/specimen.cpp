@@ -69,6 +69,21 @@ std::string axis_words(const Specimen& s, std::size_t axis) {
   return fmt::format("{} 0 to {} {}", name, s.size[axis], s.periodic(axis) ? "periodic" : "between walls");
 }
 
+std::string vessel_words(const Specimen& s) {
+  const geometry::Container& vessel = s.scene.container;
+  switch (vessel.shape) {
+    case geometry::Shape::frustum:
+      return fmt::format("frustum: wall of radius {} at the floor and {} at H_d around x = y = {}", vessel.ends[0],
+                         vessel.ends[1], s.radius());
+    case geometry::Shape::sphere:
+      return fmt::format("sphere: wall of radius {0} around x = y = z = {0}", s.radius());
+    case geometry::Shape::annulus:
+      return fmt::format("annulus: walls of radius {0} and {1} around x = y = {0}", s.radius(), vessel.core);
+    default:
+      return fmt::format("cylinder: wall of radius {0} around x = y = {0}", s.radius());
+  }
+}
+
 }  // namespace
 
 bool Selection::kept(const pack::ParticleRow& row) const {
@@ -192,6 +207,16 @@ Specimen survey(const comm::Comm& comm, const pack::PackFile& file, const Select
   return s;
 }
 
+ConeEnds cone_ends(const Specimen& s) {
+  const double low = s.scene.container.ends[0];
+  const double rise = (s.scene.container.ends[1] - low) / s.scene.container.height();
+  const auto radius = [&](double z) { return std::max(0.0, low + rise * z); };
+  double from = -s.widest, to = inner_box(s)[2].high + 4.0 * s.widest;
+  if (rise > 0.0) from = std::max(from, -0.9 * (low / rise));
+  if (rise < 0.0) to = std::min(to, -(low / rise));
+  return {{from, to}, {radius(from), radius(to)}};
+}
+
 std::array<Extent, 3> inner_box(const Specimen& s) {
   std::array<Extent, 3> box{};
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) box[axis] = {0.0, s.size[axis]};
@@ -211,8 +236,7 @@ std::array<Extent, 3> padded_box(const Specimen& s) {
 }
 
 std::vector<std::string> header_lines(const Specimen& s) {
-  std::string box = s.round() ? fmt::format("cylinder: wall of radius {0} around x = y = {0}", s.radius())
-                              : "box: " + axis_words(s, 0);
+  std::string box = s.round() ? vessel_words(s) : "box: " + axis_words(s, 0);
   for (std::size_t axis = s.round() ? 2 : 1; axis <= s.vertical(); ++axis) box += "; " + axis_words(s, axis);
   std::vector<std::string> lines{
       fmt::format("packmpi {}: units si (m, kg, s)", version()),

@@ -75,8 +75,9 @@ struct Specimen {
   Vec3 lowest{}, highest{};  ///< [m] of the centres
 
   [[nodiscard]] bool flat() const { return scene.container.dimension == 2; }
-  /// A vessel that is no box: its wall goes around the axis at x = y = radius.
+  /// A vessel that is no box: its walls go around the axis at x = y = radius.
   [[nodiscard]] bool round() const { return !scene.container.is_box(); }
+  [[nodiscard]] bool has(geometry::Surface wall) const { return scene.container.has(wall); }
   [[nodiscard]] double radius() const { return scene.container.radius(); }  ///< [m] of it
   [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.container.vertical()); }
   /// Of axis x, y or z.
@@ -87,6 +88,13 @@ struct Specimen {
 struct Extent {
   double low, high;
 };
+
+/// A frustum's wall from below the floor to above the particles, for codes whose cones have ends: heights and radii
+/// there [m].
+struct ConeEnds {
+  Extent height, radius;
+};
+[[nodiscard]] ConeEnds cone_ends(const Specimen& specimen);
 
 /// The box the particles live in: walls or period, the floor, and above the higher of H_d and the top. z of 2D: 0, 0.
 [[nodiscard]] std::array<Extent, 3> inner_box(const Specimen& specimen);

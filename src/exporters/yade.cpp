@@ -27,16 +27,33 @@ std::string cell(const Specimen& s) {
   return fmt::format("##PERIODIC:: {:.17g} {:.17g} {:.17g}\n", size[0], size[1], size[2]);
 }
 
-/// Facets that touch the cylinder from outside, so many that their edges are half a thousandth of a radius beyond it;
-/// they begin below the floor, so that no particle meets their ends.
+/// Facets that touch the wall from where no particle is, so many that their edges are half a thousandth of a radius
+/// beyond it; they begin below the floor, so that no particle meets their ends.
 std::string mantle(const Specimen& s) {
   constexpr double gap = 5e-4;
   const double facets = std::max(48.0, std::ceil(std::numbers::pi * std::sqrt(s.radius() / (2.0 * gap * s.widest))));
   const double high = inner_box(s)[2].high + 4.0 * s.widest;
-  return fmt::format(
-      "walls += geom.facetCylinder(({0}, {0}, {1}), {0} / math.cos(math.pi / {2:.0f}), {3}, segmentsNumber={2:.0f}, "
-      "wallMask=4, material='walls')\n",
-      s.radius(), 0.5 * (high - s.widest), facets, high + s.widest);
+  const auto cylinder = [&](double radius, const char* edges) {
+    return fmt::format(
+        "walls += geom.facetCylinder(({0}, {0}, {1}), {4}{5}, {3}, segmentsNumber={2:.0f}, "
+        "wallMask=4, material='walls')\n",
+        s.radius(), 0.5 * (high - s.widest), facets, high + s.widest, radius, edges);
+  };
+  const std::string outside = fmt::format(" / math.cos(math.pi / {:.0f})", facets);
+  std::string text;
+  if (s.scene.container.shape == geometry::Shape::frustum) {
+    const auto [height, radius] = cone_ends(s);
+    text = fmt::format(
+        "walls += geom.facetCone(({0}, {0}, {1}), {2}{5}, {3}{5}, {4}, segmentsNumber={6:.0f}, wallMask=4, "
+        "material='walls')\n",
+        s.radius(), 0.5 * (height.low + height.high), radius.high, radius.low, height.high - height.low, outside,
+        facets);
+  } else {
+    text = cylinder(s.radius(), outside.c_str());
+  }
+  if (s.has(geometry::Surface::inner)) text += cylinder(s.scene.container.core, "");
+  if (s.has(geometry::Surface::collar)) text += cylinder(s.scene.container.ends[1], outside.c_str());
+  return text;
 }
 
 std::string walls(const Specimen& s) {
