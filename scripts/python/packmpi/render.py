@@ -24,6 +24,7 @@ from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E4
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
+from . import vessel  # noqa: E402
 from .problem import Problem  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
 from .style import BACKGROUND, INK, LID, TARGET  # noqa: E402
@@ -100,10 +101,10 @@ LID_WORDS = "blue: lid"
 
 
 def container_size(pack: Pack) -> str:
-    """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest; of a cylinder its diameter and height."""
+    """Its lengths, "0.6 x 0.6 x 0.45 m", in a unit that suits the largest; of another vessel what it is, too."""
     scale, unit = length_unit(float(pack.size.max()))
-    if pack.shape == "cylinder":
-        return f"a cylinder, {scale * pack.size[0]:g} x {scale * pack.size[2]:g} {unit}"
+    if pack.shape != "box":
+        return vessel.words(pack, scale, unit)
     lengths = [*pack.size[:-1], pack.size[-1] if pack.lid is None else pack.lid]
     return " x ".join(f"{scale * length:g}" if pack.lid is None else f"{scale * length:.4g}" for length in lengths) + f" {unit}"
 

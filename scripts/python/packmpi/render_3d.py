@@ -12,6 +12,7 @@ from vtk.util import numpy_support as convert
 
 from .problem import Problem
 from .pack import Floats, Pack
+from . import vessel
 from .style import BACKGROUND, INK, LID, TARGET
 
 Point = tuple[float, float, float]
@@ -109,24 +110,29 @@ def plate_actor(lx: float, ly: float, z: float) -> Any:
     return actor
 
 
-def ring(radius: float, z: float) -> list[Segment]:
-    """A circle at a height, around x = y = radius."""
+def ring(centre: float, radius: float, z: float) -> list[Segment]:
+    """A circle at a height, around x = y = centre."""
     angles = np.linspace(0.0, 2.0 * np.pi, 121)
-    points = [(radius * (1.0 + np.cos(a)), radius * (1.0 + np.sin(a)), z) for a in angles]
+    points = [(centre + radius * np.cos(a), centre + radius * np.sin(a), z) for a in angles]
     return list(zip(points[:-1], points[1:]))
 
 
-def mantle_actor(radius: float, top: float) -> Any:
-    """The wall of a cylinder, as clear as glass."""
-    line = vtk.vtkLineSource()
-    line.SetPoint1(radius, radius, 0.0)
-    line.SetPoint2(radius, radius, top)
-    tube = vtk.vtkTubeFilter()
-    tube.SetInputConnection(line.GetOutputPort())
-    tube.SetRadius(radius)
-    tube.SetNumberOfSides(120)
+def mantle_actor(centre: float, line: Floats) -> Any:
+    """The wall that a line of (height, radius) makes by turning around x = y = centre, as clear as glass."""
+    points, cells, around = vtk.vtkPoints(), vtk.vtkCellArray(), 120
+    for z, radius in line:
+        for a in np.linspace(0.0, 2.0 * np.pi, around, endpoint=False):
+            points.InsertNextPoint(centre + radius * np.cos(a), centre + radius * np.sin(a), z)
+    for level in range(len(line) - 1):
+        for k in range(around):
+            cells.InsertNextCell(4)
+            for corner in (k, (k + 1) % around, (k + 1) % around + around, k + around):
+                cells.InsertCellPoint(level * around + corner)
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(cells)
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(tube.GetOutputPort())
+    mapper.SetInputData(data)
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
@@ -136,14 +142,26 @@ def mantle_actor(radius: float, top: float) -> Any:
     return actor
 
 
+def vessel_actors(pack: Pack) -> list[Any]:
+    """A round vessel: its walls, the circles where they begin and end, and the target height on them."""
+    scale = 1.0 / extent(pack)
+    centre, target = 0.5 * scale * pack.size[0], scale * pack.size[-1]
+    actors, edges, marks = [], [], []
+    for line in vessel.outlines(pack, pack.top()):
+        actors.append(mantle_actor(centre, scale * line))
+        for z, radius in scale * (line if pack.shape == "frustum" else line[[0, -1]]):
+            edges += ring(centre, max(radius, 1e-6), z)
+    for radius in vessel.radii_at(pack, float(pack.size[-1])):
+        marks += ring(centre, max(scale * radius, 1e-6), target)
+    return [lines_actor(edges, INK, 0.0015), lines_actor(marks, TARGET, 0.0025)] + actors
+
+
 def container_actors(pack: Pack) -> list[Any]:
     """The edges of the container, and the target height; or a lid that lets what is under it be seen; of a round one its wall, too."""
     lx, ly, target = pack.size / extent(pack)
     top = (pack.top() if pack.lid is None else pack.lid) / extent(pack)
-    if pack.shape == "cylinder":
-        radius = 0.5 * lx
-        return [lines_actor(ring(radius, 0.0) + ring(radius, top), INK, 0.0015), lines_actor(ring(radius, target), TARGET, 0.0025),
-                mantle_actor(radius, top)]
+    if pack.shape != "box":
+        return vessel_actors(pack)
     upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
     thickness = 0.0020
     if pack.lid is not None:
