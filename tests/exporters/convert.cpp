@@ -45,11 +45,14 @@ class Convert : public ::testing::Test {
 
   /// A pack of made-up particles in folder_; its path.
   std::string make_pack(std::size_t count, int dimension, const std::string& boundary) {
+    return make_pack_of(count, dimension, scene_text(dimension, boundary));
+  }
+  std::string make_pack_of(std::size_t count, int dimension, const std::string& scene) {
     std::vector<Grain> grains = testing::some_grains(count, dimension);
     for (Grain& g : grains) g.r *= 0.1;
     const auto parts = testing::make_parts(comm_, particles::layout_of(dimension, true), grains, Spread::some);
     RunRecord record = testing::some_record(dimension, 1);
-    record.effective_input = input::parse(scene_text(dimension, boundary), "scene", {}).effective;
+    record.effective_input = input::parse(scene, "scene", {}).effective;
     record.seed = 7;
     const std::string path = folder_.file("sample.hdf");
     write_pack(comm_, path, parts.view(false), record);
@@ -342,6 +345,43 @@ TEST_F(Convert, ASpecimenInASurfaceOfAFile) {
   EXPECT_TRUE(contains(with("no.stl"), "no.stl cannot be opened (No such file"));
   write_file(comm_, folder_.file("open.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nf 1 2 3\nf 1 3 4\n");
   EXPECT_TRUE(contains(with(folder_.file("open.obj")), "open.obj: the surface is open: 4 edges"));
+}
+
+TEST_F(Convert, WallsOfVesselsAreThoseThatACodeHas) {
+  const auto pack_in = [&](const std::string& vessel) {
+    std::string scene = scene_text(3, "\"wall\", \"wall\"");
+    const std::size_t begin = scene.find("dimension"), end = scene.find("[particles]");
+    return make_pack_of(100, 3, scene.replace(begin, end - begin, vessel));
+  };
+  const auto in_file = [&](const std::string& path, const std::string& format) {
+    return contents(convert_pack(comm_, {.pack = path, .format = format, .force = true}).files.at(1));
+  };
+  const std::string hopper = pack_in("shape = \"frustum\"\nbottom_diameter = 6.0\ntop_diameter = 12.0\nheight = 0.6\n");
+  const std::string lammps = in_file(hopper, "lammps");
+  std::array<double, 4> cone{};  // radii below and above, heights there
+  const std::string mark = "region          mantle cone z 6 6 ";
+  ASSERT_TRUE(contains(lammps, mark));
+  std::istringstream numbers(lammps.substr(lammps.find(mark) + mark.size()));
+  for (double& number : cone) numbers >> number;
+  const double rise = (cone[1] - cone[0]) / (cone[3] - cone[2]);
+  EXPECT_NEAR(rise, 5.0, 1e-12);
+  EXPECT_NEAR(cone[0] - rise * cone[2], 3.0, 1e-12);
+  EXPECT_LT(cone[2], 0.0);
+  EXPECT_GT(cone[3], 0.6);
+  EXPECT_TRUE(contains(lammps, "region          collar cylinder z 6 6 6 INF INF side in units box"));
+  EXPECT_TRUE(contains(lammps, "region mantle\n") && contains(lammps, "region collar\n"));
+  EXPECT_TRUE(contains(in_file(hopper, "yade"), "geom.facetCone((6, 6, "));
+  EXPECT_TRUE(contains(refused({.pack = hopper, .format = "liggghts"}, ExitCode::bad_input), "use lammps or yade, or"));
+  const std::string ball = pack_in("shape = \"sphere\"\ndiameter = 10.0\nheight = 0.6\n");
+  EXPECT_TRUE(contains(in_file(ball, "lammps"), "region          mantle sphere 5 5 5 5 side in units box"));
+  EXPECT_FALSE(contains(in_file(ball, "lammps"), "zplane"));
+  EXPECT_TRUE(contains(refused({.pack = ball, .format = "yade"}, ExitCode::bad_input), "use lammps, or csv"));
+  const std::string ring = pack_in("shape = \"annulus\"\ndiameter = 12.0\ninner_diameter = 4.0\nheight = 0.6\n");
+  EXPECT_TRUE(contains(in_file(ring, "lammps"), "region          inner cylinder z 6 6 2 INF INF side out units box"));
+  EXPECT_TRUE(contains(in_file(ring, "liggghts"), "zcylinder 2 6 6"));
+  EXPECT_TRUE(contains(refused({.pack = ring, .format = "pfc"}, ExitCode::bad_input), "lammps or liggghts or yade"));
+  EXPECT_TRUE(contains(refused({.pack = ring, .format = "csv", .cut = "cylinder:diameter=2"}, ExitCode::bad_input),
+                       "from the axis of the annulus"));
 }
 
 TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
