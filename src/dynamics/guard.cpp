@@ -97,7 +97,10 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
     const double depth = walls.particle[w] == i ? penetration_of(now, i, walls.wall[w]) : 0.0;
-    if (depth > 0.0) touching.emplace_back(-depth, names.at(static_cast<std::size_t>(walls.wall[w])));
+    if (!(depth > 0.0)) continue;
+    const auto number = static_cast<std::size_t>(walls.wall[w]);
+    touching.emplace_back(
+        -depth, number < names.size() ? names.at(number) : fmt::format("part {} of the mesh", number - names.size()));
   }
   if (touching.empty()) return "touches nothing";
   std::ranges::sort(touching);

@@ -24,10 +24,27 @@ PACKMPI_INLINE void put_round(const geometry::RoundWall& wall, Block<F>& b, int 
   b.distance[p] = wall.offset - wall.radial * rho - lean;
 }
 
+/// The same of a face, an edge or a corner of a mesh, entry `entry` of the wall list.
+template <Features F>
+PACKMPI_INLINE void put_feature(const StepData& data, Block<F>& b, int p, std::int64_t entry, std::int32_t feature,
+                                const double* x) {
+  if constexpr (F.dimension == 3) {
+    const mesh::Table table = data.mesh;
+    const std::int32_t* at = data.near_begin + entry;
+    const mesh::Touch touch = mesh::touch(table, feature, data.near, at[0], at[1], x);
+    b.in[0][p] = touch.normal[0];
+    b.in[1][p] = touch.normal[1];
+    b.in[2][p] = touch.normal[2];
+    b.distance[p] = touch.distance;
+  }
+}
+
 /// Fill entry p of the block for one particle at one wall: the wall is a second end whose fields are zero, but for its
 /// speed along its axis.
 template <Features F>
-PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalIndex particle, neighbor::Wall wall) {
+PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, std::int64_t entry) {
+  const LocalIndex particle = data.wall_particle[entry];
+  const neighbor::Wall wall = data.wall[entry];
   using M = Memory<F>;
   constexpr particles::Layout layout = F.layout();
   const double* record = data.records + std::int64_t{particle} * layout.stride;
@@ -38,6 +55,10 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, LocalInde
   const auto number = static_cast<unsigned>(wall);
   // Copies: the block that is written below cannot alias them.
   if (number >= geometry::most_planes) [[unlikely]] {
+    if (number >= geometry::most_surfaces) {
+      put_feature<F>(data, b, p, entry, static_cast<std::int32_t>(number - geometry::most_surfaces), record);
+      return;
+    }
     const geometry::RoundWall round = data.round[number - geometry::most_planes];
     put_round<F>(round, b, p, record);
     return;
@@ -58,8 +79,7 @@ PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double s
     b.count = count;
     b.filled = (count + 7) & ~7;
     for (int p = 0; p < b.filled; ++p) {
-      const std::int64_t entry = from + (p < count ? p : count - 1);
-      put_wall<F>(data, b, p, data.wall_particle[entry], data.wall[entry]);
+      put_wall<F>(data, b, p, from + (p < count ? p : count - 1));
     }
     look_up<F>(data.law.wall_table, b);
     fetch<F>(data.stored_walls, from, b);

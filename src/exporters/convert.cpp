@@ -42,6 +42,15 @@ const Format& format_of(const std::string& name) {
 struct Names {
   ConvertRequest request;
   std::string companion;
+  std::string surface = "";  // of a mesh, for formats that have it in a file
+
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> all{request.file};
+    for (const std::string& one : {companion, surface}) {
+      if (!one.empty()) all.push_back(one);
+    }
+    return all;
+  }
 };
 
 Names name_files(ConvertRequest request, const FormatWords& words) {
@@ -61,9 +70,9 @@ Names name_files(ConvertRequest request, const FormatWords& words) {
 }
 
 void check_free(const Names& names) {
-  for (const std::string& path : {names.request.file, names.companion}) {
+  for (const std::string& path : names.files()) {
     std::error_code ignored;
-    if (path.empty() || !std::filesystem::exists(path, ignored)) continue;
+    if (!std::filesystem::exists(path, ignored)) continue;
     if (std::filesystem::is_directory(path, ignored))
       refuse_request(path + " is a folder; -o wants the name of a file");
     if (std::filesystem::equivalent(path, names.request.pack, ignored)) refuse_request(path + " is the pack itself");
@@ -114,8 +123,8 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
     std::vector<Shape> shapes;
   };
   const std::array<Carried, 3> able{Carried{"lammps", {Shape::frustum, Shape::sphere, Shape::annulus}},
-                                    Carried{"liggghts", {Shape::annulus}},
-                                    Carried{"yade", {Shape::frustum, Shape::annulus}}};
+                                    Carried{"liggghts", {Shape::annulus, Shape::mesh}},
+                                    Carried{"yade", {Shape::frustum, Shape::annulus, Shape::mesh}}};
   constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
   const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;
   if (usual || std::ranges::find(without, request.format) != without.end()) return;
@@ -164,6 +173,7 @@ void write_files(const comm::Comm& comm, const Names& names, const Document& doc
     comm::agree_on(comm, [&] {
       if (comm.rank() != 0) return;
       if (!names.companion.empty()) disk::write_whole(names.companion, document.companion);
+      if (!names.surface.empty()) disk::write_whole(names.surface, document.surface);
       disk::commit(temporary, path);
     });
   } catch (const comm::AgreedError&) {  // every rank is here
@@ -183,7 +193,7 @@ std::vector<FormatWords> convert_formats() {
 Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   const disk::h5::Quiet quiet;
   const Format& format = format_of(request.format);  // pure: all ranks throw the same
-  const Names names = name_files(request, format.words);
+  Names names = name_files(request, format.words);
   std::optional<pack::PackFile> file;
   scene::Scene scene;
   reading(comm, request.pack, [&] {
@@ -198,15 +208,16 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
   const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene, surface);  // pure, as check_copies() is
   if (!cut.on()) check_vessel(request, scene.container);
+  if (!cut.on() && scene.container.is_mesh() && request.format == "liggghts") {
+    names.surface = std::filesystem::path(names.request.file).replace_extension(".stl").string();
+  }
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });
   const Selection selection(*file, scene, request, cut);
   const Specimen specimen = survey(comm, *file, selection, names.request, scene);
   write_files(comm, names, format.make(specimen), selection);
-  Converted done{{names.request.file}, specimen.count, specimen.volume, specimen.cut, specimen.cut_fraction};
-  if (!names.companion.empty()) done.files.push_back(names.companion);
-  return done;
+  return {names.files(), specimen.count, specimen.volume, specimen.cut, specimen.cut_fraction};
 }
 
 }  // namespace packmpi::exporters

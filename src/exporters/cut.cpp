@@ -27,15 +27,15 @@ namespace {
 }
 
 /// The names of a shape's lengths, those that it must have first.
-struct Names {
+struct LengthNames {
   std::string shape;
   std::vector<std::string> lengths;
 };
 
-Names names_of(const std::string& words, const std::string& shape, bool flat) {
-  const std::vector<Names> all{
+LengthNames names_of(const std::string& words, const std::string& shape, bool flat) {
+  const std::vector<LengthNames> all{
       {"box", {"length", "width", "height"}}, {"cylinder", {"diameter", "height"}}, {"sphere", {"diameter"}}};
-  for (const Names& names : all) {
+  for (const LengthNames& names : all) {
     if (names.shape != shape) continue;
     if (!flat) return names;
     if (shape == "box") return {"box", {"length", "height"}};
@@ -81,7 +81,7 @@ std::map<std::string, std::string> read_items(const std::string& words, const st
   return found;
 }
 
-std::map<std::string, double> read_lengths(const std::string& words, const std::string& list, const Names& names,
+std::map<std::string, double> read_lengths(const std::string& words, const std::string& list, const LengthNames& names,
                                            bool flat) {
   std::vector<std::string> known = names.lengths;
   for (const char* axis : {"x", "y", "z"}) {
@@ -129,7 +129,11 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
                            "smaller or move it",
                            low_[a], low_[a] + size_[a], "xyz"[a], room[a]));
   }
-  if (!source_.is_box() && shape_ != Shape::surface) check_round(words, slack);
+  if (source_.is_mesh()) {
+    check_in_mesh(words, slack);
+  } else if (!source_.is_box() && shape_ != Shape::surface) {
+    check_round(words, slack);
+  }
 }
 
 // Sections of vessels are convex upwards but for their middle: if both ends of the specimen lie inside, all of it does.
@@ -169,11 +173,19 @@ void Cut::check_corners(const std::string& words) const {
   }
   for (const Vec3& point : surface_->shell().points) {
     const Vec3 x{point[0] + origin_[0], point[1] + origin_[1], point[2] + origin_[2]};
-    if (source_.is_box() || source_.beyond(x) <= slack) continue;
+    if (source_.is_box() || source_.is_mesh() || source_.beyond(x) <= slack) continue;
     refuse_cut(words,
                fmt::format("its corner at ({:g}, {:g}, {:g}) m lies outside the vessel; make it smaller or move it",
                            x[0], x[1], x[2]));
   }
+}
+
+// The box around it is inside, not only its corners.
+void Cut::check_in_mesh(const std::string& words, double slack) const {
+  Vec3 low = low_, high = low_;
+  for (std::size_t a = 0; a < 3; ++a) low[a] += slack, high[a] += size_[a] - slack;
+  if (!source_.room->meets_box(low, high) && source_.holds(middle_, 0.0)) return;
+  refuse_cut(words, "the box around it does not lie inside the mesh that the pack is in; make it smaller or move it");
 }
 
 void Cut::read_surface(const std::string& words, const std::string& bytes) {
@@ -203,7 +215,7 @@ void Cut::read_surface(const std::string& words, const std::string& bytes) {
 void Cut::read(const std::string& words) {
   const bool flat = source_.dimension == 2;
   const std::size_t colon = std::min(words.find(':'), words.size());
-  const Names names = names_of(words, words.substr(0, colon), flat);
+  const LengthNames names = names_of(words, words.substr(0, colon), flat);
   const auto found = read_lengths(words, colon < words.size() ? words.substr(colon + 1) : "", names, flat);
   const auto length = [&](const std::string& name, double otherwise) {
     const auto at = found.find(name);

@@ -43,6 +43,7 @@ class Cut {
   [[nodiscard]] double inside(const Vec3& from_centre, double r) const;
   void read_surface(const std::string& words, const std::string& bytes);
   void check_corners(const std::string& words) const;
+  void check_in_mesh(const std::string& words, double slack) const;
 
   Shape shape_ = Shape::none;
   geometry::Container source_;  // that of the pack

@@ -55,6 +55,14 @@ std::string walls(const Specimen& s) {
       "{2}{3}\n";
   const int type = kinds(s) + 1;
   std::string text;
+  if (s.scene.container.is_mesh()) {
+    return fmt::format(
+        "variable        surface index {0}\n"
+        "fix             surface all mesh/surface file ${{surface}} type {1}\n"
+        "fix             wall_mesh all wall/gran model hertz tangential ${{tangential}}{2} mesh n_meshes 1 meshes "
+        "surface{3}\n",
+        liggghts_word(s.surface_file()), type, rolling(s), limit(s));
+  }
   const auto cylinder = [&](const char* name, double radius) {
     text += fmt::format(
         "fix             wall_{4} all wall/gran model hertz tangential ${{tangential}}{1} primitive type {2} "
@@ -129,6 +137,7 @@ Document make(const Specimen& s) {
        }});
   document.sections.push_back(velocities());
   document.companion = in_file(s);
+  if (s.scene.container.is_mesh()) document.surface = mesh::text_stl(s.scene.container.room->shell());
   return document;
 }
 

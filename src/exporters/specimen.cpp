@@ -79,6 +79,9 @@ std::string vessel_words(const Specimen& s) {
       return fmt::format("sphere: wall of radius {0} around x = y = z = {0}", s.radius());
     case geometry::Shape::annulus:
       return fmt::format("annulus: walls of radius {0} and {1} around x = y = {0}", s.radius(), vessel.core);
+    case geometry::Shape::mesh:
+      return fmt::format("mesh: the room of {:.9g} m3 inside {} triangles, from z = 0 to {}", vessel.room->volume(),
+                         vessel.room->shell().triangles.size(), vessel.room->high()[2]);
     default:
       return fmt::format("cylinder: wall of radius {0} around x = y = {0}", s.radius());
   }
@@ -221,6 +224,7 @@ std::array<Extent, 3> inner_box(const Specimen& s) {
   std::array<Extent, 3> box{};
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) box[axis] = {0.0, s.size[axis]};
   box[s.vertical()] = {0.0, s.scene.container.lid.value_or(std::max(s.size[s.vertical()], s.top))};
+  if (s.scene.container.is_mesh()) box[2].high = std::max(box[2].high, s.scene.container.room->high()[2]);
   return box;
 }
 
@@ -235,9 +239,12 @@ std::array<Extent, 3> padded_box(const Specimen& s) {
   return box;
 }
 
+std::string Specimen::surface_file() const { return std::filesystem::path(file).replace_extension(".stl").string(); }
+
 std::vector<std::string> header_lines(const Specimen& s) {
   std::string box = s.round() ? vessel_words(s) : "box: " + axis_words(s, 0);
-  for (std::size_t axis = s.round() ? 2 : 1; axis <= s.vertical(); ++axis) box += "; " + axis_words(s, axis);
+  const bool mesh = s.scene.container.is_mesh();
+  for (std::size_t axis = s.round() ? 2 : 1; axis <= s.vertical() && !mesh; ++axis) box += "; " + axis_words(s, axis);
   std::vector<std::string> lines{
       fmt::format("packmpi {}: units si (m, kg, s)", version()),
       fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,

@@ -80,6 +80,8 @@ struct Specimen {
   [[nodiscard]] bool has(geometry::Surface wall) const { return scene.container.has(wall); }
   [[nodiscard]] double radius() const { return scene.container.radius(); }  ///< [m] of it
   [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.container.vertical()); }
+  /// The name of the file that a mesh's surface is in, without folder.
+  [[nodiscard]] std::string surface_file() const;
   /// Of axis x, y or z.
   [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.container.periodic[axis]; }
 };

@@ -56,7 +56,18 @@ std::string mantle(const Specimen& s) {
   return text;
 }
 
+/// The triangles of a mesh.
+std::string facets(const Specimen& s) {
+  const mesh::Shell& shell = s.scene.container.room->shell();
+  std::string text = "points = [\n";
+  for (const Vec3& x : shell.points) text += fmt::format("    ({}, {}, {}),\n", x[0], x[1], x[2]);
+  text += "]\ntriangles = [\n";
+  for (const auto& t : shell.triangles) text += fmt::format("    ({}, {}, {}),\n", t[0], t[1], t[2]);
+  return text + "]\nwalls = [utils.facet([points[k] for k in t], material='walls') for t in triangles]\n";
+}
+
 std::string walls(const Specimen& s) {
+  if (s.scene.container.is_mesh()) return facets(s);
   std::string text = fmt::format("walls = [utils.wall(0, axis={}, sense=1, material='walls')]\n", s.vertical());
   if (s.round()) return text + mantle(s);
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) {

@@ -172,8 +172,14 @@ Ring Container::ring(double height, double margin) const {
   }
 }
 
+Facing Container::facing_mesh(std::size_t feature, const Vec3& x) const {
+  const mesh::Touch touch = room->touch_of(static_cast<std::int32_t>(feature), x, behind);
+  return {touch.distance, {touch.normal[0], touch.normal[1], touch.normal[2]}};
+}
+
 double Container::room_between(double margin, double low, double high) const {
   if (!(low < high)) return 0.0;
+  if (is_mesh()) return room->room_between(margin, low, high);
   if (shape == Shape::frustum) return room_in_frustum(*this, margin, low, high);
   if (shape == Shape::sphere) return room_in_sphere(*this, margin, low, high);
   const Ring here = ring(0.0, margin);
@@ -181,6 +187,7 @@ double Container::room_between(double margin, double low, double high) const {
 }
 
 double Container::area_at(double height) const {
+  if (is_mesh()) return room->area_at(height);
   if (straight()) return section();
   const double outer = ring(height, 0.0).outer;
   return std::numbers::pi * (outer * outer);
@@ -191,12 +198,14 @@ double Container::level(double volume) const {
   double top = height();
   const double below = volume_between(0.0, top);
   if (shape == Shape::sphere) top = size[0];
+  if (is_mesh()) top = room->high()[2];
   if (shape == Shape::frustum && closes()) top = Cone(*this).height(0.0, 0.0);
   if (volume >= volume_between(0.0, top)) return closes() ? top : top + (volume - below) / area_at(top);
   return place_of(volume, 0.0, top, [&](double z) { return volume_between(0.0, z); });
 }
 
 double Container::wall_area(double up_to) const {
+  if (is_mesh()) return room->walls_below(up_to);
   if (shape == Shape::sphere) return 2.0 * std::numbers::pi * radius() * std::min(up_to, size[0]);  // Archimedes
   if (shape == Shape::annulus) return 2.0 * std::numbers::pi * (radius() + core) * up_to;
   if (shape == Shape::frustum) {
@@ -226,6 +235,7 @@ double Container::walls_over_room() const {
 Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness) const {
   const auto up = static_cast<std::size_t>(vertical());
   const double bottom = low + radius, height = thickness - 2.0 * radius;
+  if (is_mesh()) return room->draw(u, radius, bottom, bottom + height);
   Vec3 place{};
   place[up] = bottom + u[up] * height;
   if (is_box()) {
@@ -236,10 +246,10 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
     return place;
   }
   if (!straight()) {
-    const double room = room_between(radius, bottom, bottom + height);
-    place[up] = room > 0.0 ? place_of(u[up] * room, bottom, bottom + height,
-                                      [&](double z) { return room_between(radius, bottom, z); })
-                           : bottom + (closes() ? 0.0 : height);
+    const double volume = room_between(radius, bottom, bottom + height);
+    place[up] = volume > 0.0 ? place_of(u[up] * volume, bottom, bottom + height,
+                                        [&](double z) { return room_between(radius, bottom, z); })
+                             : bottom + (closes() ? 0.0 : height);
   }
   place[0] = 0.5 * size[0], place[1] = 0.5 * size[1];
   draw_in_ring(ring(place[up], radius), u, place);
@@ -247,6 +257,10 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
 }
 
 double Container::slab(std::size_t axis, double from, double to, double low, double high) const {
+  if (is_mesh()) {
+    return (room->volume_below(high, axis, to) - room->volume_below(high, axis, from)) -
+           (room->volume_below(low, axis, to) - room->volume_below(low, axis, from));
+  }
   const double middle = 0.5 * size[axis];
   const auto between = [&](double r) {
     const auto below = [&](double x) { return r > 0.0 ? volume_below(2, r, middle, x) : 0.0; };
@@ -276,6 +290,12 @@ double Container::slab(std::size_t axis, double from, double to, double low, dou
 }
 
 void Container::touching_planes(const Vec3& x, double range, const Found& found) const {
+  if (is_mesh()) {
+    room->touches(x, range, behind, [&](std::int32_t, const mesh::Touch& touch) {
+      found({touch.normal[0], touch.normal[1], touch.normal[2]}, touch.distance);
+    });
+    return;
+  }
   for (std::size_t k = 0; k < most_round && !is_box(); ++k) {
     if (!has(static_cast<Surface>(most_planes + k))) continue;
     const RoundWall wall = round(k);

@@ -9,11 +9,13 @@
 #include <optional>
 
 #include "base/types.hpp"
+#include "mesh/surface.hpp"
 
 namespace packmpi::geometry {
 
 /// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only); 5 the lid; 6 the mantle of a
-/// round vessel; 7 the inner wall of an annulus; 8 what goes on above a frustum that widens.
+/// round vessel; 7 the inner wall of an annulus; 8 what goes on above a frustum that widens; from most_surfaces on the
+/// faces, edges and corners of a mesh.
 enum class Surface : std::int32_t {
   floor = 0,
   x_low = 1,
@@ -28,9 +30,11 @@ enum class Surface : std::int32_t {
 inline constexpr std::size_t most_planes = 6;  ///< surfaces below it are planes across an axis
 inline constexpr std::size_t most_round = 3;   ///< those from it on are round walls
 inline constexpr std::size_t most_surfaces = most_planes + most_round;
+inline constexpr std::size_t most_walls = most_surfaces + (std::size_t{1} << 24U);  ///< no mesh has as many parts
 
-/// What the vessel looks like: a rectangle or prism, or a body of revolution about a vertical axis.
-enum class Shape : std::int32_t { box, cylinder, frustum, sphere, annulus };
+/// What the vessel looks like: a rectangle or prism, a body of revolution about a vertical axis, or the inside of a
+/// mesh.
+enum class Shape : std::int32_t { box, cylinder, frustum, sphere, annulus, mesh };
 
 /// Where a wall is, seen from a point: its distance [m], negative behind it, the unit vector towards it, and how it
 /// moves [m/s]; -0 where it stands, so that -0 - v is -v.
@@ -93,7 +97,8 @@ struct Ring {
 /// A rectangle (2D: x lateral, y vertical) or prism (3D: x, y lateral, z vertical), lower corner at the origin, open at
 /// the top or under a lid, whose lateral axes end in walls or are periodic; or a body of revolution about a vertical
 /// axis, which stands in such a prism and touches its sides: a cylinder, a frustum (which goes on above H_d as a
-/// cylinder if it widens, else as the cone that it is), a sphere that is filled up to H_d, or an annulus.
+/// cylinder if it widens, else as the cone that it is), a sphere that is filled up to H_d, or an annulus; or what is
+/// inside a closed surface of triangles, which has neither floor nor lid of its own.
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
@@ -101,18 +106,23 @@ struct Container {
   std::optional<double> lid = std::nullopt;  ///< [m] height of a rigid lid; none: open at the top
   Vec3 speed{-0.0, -0.0, -0.0};  ///< [m/s] of walls that move: the high one of each lateral axis, and the lid
   Shape shape = Shape::box;
-  std::array<double, 2> ends{};  ///< [m] radii of a frustum at the floor and at H_d
-  double core = 0.0;             ///< [m] radius of the inner wall of an annulus
+  std::array<double, 2> ends{};         ///< [m] radii of a frustum at the floor and at H_d
+  double core = 0.0;                    ///< [m] radius of the inner wall of an annulus
+  const mesh::Surface* room = nullptr;  ///< of a mesh; its owner is asked::Container
+  double behind = 0.0;                  ///< [m] of a mesh: half the smallest radius, see mesh::Table
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }
   [[nodiscard]] constexpr double height() const { return size[static_cast<std::size_t>(dimension - 1)]; }  ///< H_d [m]
   [[nodiscard]] constexpr bool is_box() const { return shape == Shape::box; }
   /// The same cross-section at every height?
-  [[nodiscard]] constexpr bool straight() const { return shape != Shape::frustum && shape != Shape::sphere; }
+  [[nodiscard]] constexpr bool straight() const {
+    return shape != Shape::frustum && shape != Shape::sphere && !is_mesh();
+  }
+  [[nodiscard]] constexpr bool is_mesh() const { return shape == Shape::mesh; }
   /// Does it narrow towards the top, so that nothing has room far above H_d?
   [[nodiscard]] constexpr bool closes() const {
-    return shape == Shape::sphere || (shape == Shape::frustum && ends[1] < ends[0]);
+    return shape == Shape::sphere || is_mesh() || (shape == Shape::frustum && ends[1] < ends[0]);
   }
   [[nodiscard]] constexpr double radius() const { return 0.5 * size[0]; }  ///< [m] of a round vessel where it is widest
 
@@ -138,6 +148,7 @@ struct Container {
   /// Has this container this wall? Periodic axes have none.
   [[nodiscard]] constexpr bool has(Surface surface) const {
     const auto number = static_cast<std::size_t>(surface);
+    if (is_mesh()) return room != nullptr && number >= most_surfaces;
     if (number == 0) return shape != Shape::sphere;
     if (surface == Surface::lid) return lid.has_value();
     if (!is_box()) {
@@ -162,15 +173,17 @@ struct Container {
     return {axis, -1.0, 0.0};
   }
   /// Where the wall of that number is, seen from `x`. Of those that this container has.
-  [[nodiscard]] Facing facing(Surface surface, const Vec3& x) const {
-    const auto number = static_cast<std::size_t>(surface);
+  [[nodiscard]] Facing facing(Surface wall, const Vec3& x) const {
+    const auto number = static_cast<std::size_t>(wall);
+    if (number >= most_surfaces) return facing_mesh(number - most_surfaces, x);
     if (number >= most_planes) return round(number - most_planes).facing(x);
-    const Plane flat = plane(surface);
+    const Plane flat = plane(wall);
     Facing facing{flat.distance(x), flat.normal()};
     facing.velocity[static_cast<std::size_t>(flat.axis)] = flat.speed;
     return facing;
   }
-  /// Calls found(surface, distance [m]) for each wall nearer to `x` than `range` [m], in the order of their numbers.
+  /// Not of a mesh. Calls found(surface, distance [m]) for each wall nearer to `x` than `range` [m], in the order of
+  /// their numbers.
   template <class Found>
   void near_walls(const Vec3& x, double range, Found&& found) const {
     const std::size_t walls = is_box() ? most_planes : most_surfaces;
@@ -182,6 +195,7 @@ struct Container {
   }
   /// How far `x` is behind a wall or the end of a periodic axis [m]; negative: inside. NaN if a coordinate is.
   [[nodiscard]] double beyond(const Vec3& x) const {
+    if (is_mesh()) return room->beyond(x);
     if (!is_box()) {
       const double low = has(Surface::floor) ? -plane(Surface::floor).distance(x) : -HUGE_VAL;
       const double here = -from_sides(x);
@@ -198,7 +212,8 @@ struct Container {
     }
     return most;
   }
-  /// From the nearest side wall of a round vessel [m]; negative: behind it. NaN if a coordinate is. Of a box: infinite.
+  /// Not of a mesh. From the nearest side wall of a round vessel [m]; negative: behind it. NaN if a coordinate is. Of a
+  /// box: infinite.
   [[nodiscard]] double from_sides(const Vec3& x) const {
     double least = HUGE_VAL;
     for (std::size_t k = 0; k < most_round && !is_box(); ++k) {
@@ -209,14 +224,18 @@ struct Container {
     return least;
   }
   /// Is the point inside the side walls of a round vessel and at least `margin` [m] away from them? In a box: yes.
-  [[nodiscard]] bool holds(const Vec3& x, double margin) const { return is_box() || from_sides(x) >= margin; }
+  [[nodiscard]] bool holds(const Vec3& x, double margin) const {
+    if (is_mesh()) return margin > 0.0 ? room->distance(x, margin) >= margin : room->beyond(x) <= 0.0;
+    return is_box() || from_sides(x) >= margin;
+  }
 
   /// Where at a height [m] the points of a round vessel are that its side walls are `margin` [m] away from at least.
   [[nodiscard]] Ring ring(double height, double margin) const;
   /// Volume of such points between two heights [m]: [m3]. Exact.
   [[nodiscard]] double room_between(double margin, double low, double high) const;
   /// The place of a centre for uniform numbers `u` in [0, 1): evenly over where a particle of `radius` [m] fits between
-  /// the side walls and within `thickness` [m] above the height `low` [m].
+  /// the side walls and within `thickness` [m] above the height `low` [m]. Of a mesh without a height (NaN) if none was
+  /// found.
   [[nodiscard]] Vec3 draw(const Vec3& u, double radius, double low, double thickness) const;
 
   /// Of what lies inside a round vessel the part with `axis` (0 or 1) between `from` and `to` and between two heights
@@ -228,6 +247,7 @@ struct Container {
   void touching_planes(const Vec3& x, double range, const std::function<void(const Vec3&, double)>& found) const;
 
  private:
+  [[nodiscard]] Facing facing_mesh(std::size_t feature, const Vec3& x) const;
   [[nodiscard]] constexpr double section() const {  // of a straight one, at every height
     if (shape == Shape::annulus) return std::numbers::pi * ((radius() - core) * (radius() + core));
     if (!is_box()) return std::numbers::pi * (radius() * radius());

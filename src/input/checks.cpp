@@ -71,6 +71,7 @@ struct Case {
     return axis + 1 == in.container.size.size() ? "container.height" : room_key();
   }
   [[nodiscard]] const char* room_key() const {
+    if (is(VesselShape::mesh)) return "container.file";
     if (!is(VesselShape::frustum)) return boxed() ? "container.size" : "container.diameter";
     return in.container.bottom_diameter < in.container.top_diameter ? "container.top_diameter"
                                                                     : "container.bottom_diameter";
@@ -181,6 +182,22 @@ void check_fit(const Case& scene) {
   }
 }
 
+/// H_d is inside, and there is room at all.
+void check_mesh(const Case& scene) {
+  const Container& c = scene.in.container;
+  const double top = c.mesh->high()[2], r = scene.largest();
+  if (c.height > top * (1.0 + 1e-12)) {
+    scene.refuse("container.height",
+                 fmt::format("{:g} m is above the top of the mesh, {:g} m; lower it", c.height, top));
+  }
+  if (c.mesh->volume() < 4.0 / 3.0 * std::numbers::pi * r * r * r) {
+    scene.refuse("container.file",
+                 fmt::format("the mesh has a volume of {:.3g} m3, less than the largest particle, {:g} m "
+                             "across; is container.unit right?",
+                             c.mesh->volume(), 2.0 * r));
+  }
+}
+
 /// The largest particle at both ends of a frustum, and what only some vessels have.
 void check_vessel(const Case& scene) {
   const Container& c = scene.in.container;
@@ -199,6 +216,7 @@ void check_vessel(const Case& scene) {
                                c.inner_diameter, gap, diameter));
     }
   }
+  if (scene.is(VesselShape::mesh)) return check_mesh(scene);
   if (!scene.is(VesselShape::frustum)) return;
   const geometry::Container frustum = container_of(c);
   for (const bool top : {false, true}) {

@@ -87,8 +87,9 @@ constexpr Condition frustum{"shape = \"frustum\"",
                             [](const Input& in) { return in.container.shape == VesselShape::frustum; }};
 constexpr Condition annulus{"shape = \"annulus\"",
                             [](const Input& in) { return in.container.shape == VesselShape::annulus; }};
+constexpr Condition meshed{"shape = \"mesh\"", [](const Input& in) { return in.container.shape == VesselShape::mesh; }};
 constexpr Condition round{"shape = \"cylinder\", \"sphere\" or \"annulus\"",
-                          [](const Input& in) { return vessel.holds(in) && !frustum.holds(in); }};
+                          [](const Input& in) { return vessel.holds(in) && !frustum.holds(in) && !meshed.holds(in); }};
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
 constexpr Condition gaussian{"distribution = \"gaussian\"",
                              [](const Input& in) { return is(in, SizeDistribution::gaussian); }};
@@ -149,7 +150,7 @@ std::vector<Key> container_keys() {
           "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
     word("container.shape", at(container, &Container::shape), "box",
           "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2; \"frustum\": a cone without its tip, "
-          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders (doc/vessels.md)."),
+          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders; \"mesh\": the room inside a closed surface of triangles (doc/vessels.md)."),
     when(boxed, reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
           "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D. Of a cylinder [D, D, H_d] stands for diameter and height.")),
     when(round, real("container.diameter", at(container, &Container::diameter), length, above(0), mandatory, "Diameter inside.")),
@@ -157,6 +158,11 @@ std::vector<Key> container_keys() {
     when(frustum, real("container.top_diameter", at(container, &Container::top_diameter), length, above(0), mandatory,
           "Diameter inside at the height H_d. A frustum that widens goes on above H_d as a cylinder, one that narrows as the cone that it is.")),
     when(annulus, real("container.inner_diameter", at(container, &Container::inner_diameter), length, above(0), mandatory, "Diameter of the cylinder inside, seen from outside.")),
+    when(meshed, word("container.file", at(container, &Container::file), R"("")",
+          "The surface, in the scene's folder or below it: STL in text or in binary (.stl), or OBJ (.obj). The lower corner of the box around it comes to x = y = z = 0.")),
+    when(meshed, word("container.unit", at(container, &Container::unit), R"("m")", "What its lengths are in: \"m\", \"mm\" and the like.")),
+    when(meshed, word("container.surface", at(container, &Container::surface), R"("")",
+          "The surface itself, as the lines of an OBJ file in metres: in packs and checkpoints what was read from the file.")),
     when(vessel, real("container.height", at(container, &Container::height), length, above(0), mandatory, "The height H_d to be filled.")),
     when(boxed, reals("container.boundary", at(container, &Container::boundary), Count::lateral_axes, plain, any, "wall",
           "How each lateral axis ends. There is always a floor; the top is open.")),

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "asked/mesh_vessel.hpp"
 #include "base/error.hpp"
 #include "base/regular_file.hpp"
 #include "base/text.hpp"
@@ -147,14 +148,14 @@ void read_key(const Key& key, const Document& document, Input& in) {
   }
 }
 
-std::string file_text(const std::string& path, std::string_view what) {
+std::string file_text(const std::string& path, std::string_view what, std::size_t longest = Document::longest_file) {
   const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
   const RegularFile file(path);
   const std::string& flaw = file.flaw();
   if (!flaw.empty()) refuse(flaw + (flaw.starts_with("cannot") ? "; check the path" : fmt::format("; give {}", what)));
-  const std::optional<std::string> text = file.read(0, Document::longest_file + 1);
+  const std::optional<std::string> text = file.read(0, static_cast<std::int64_t>(longest) + 1);
   if (!text) refuse("cannot be read to its end; check the file system");
-  if (text->size() > Document::longest_file) refuse(fmt::format("is longer than 4 MiB; is it {}?", what));
+  if (text->size() > longest) refuse(fmt::format("is longer than {}; is it {}?", text::bytes(longest), what));
   return *text;
 }
 
@@ -234,6 +235,8 @@ Document with_changes(const std::string& text, const std::string& path, const Ov
 
 constexpr std::string_view curve_file_key = "particles.radius.diameter_curve_file";
 constexpr std::string_view list_file_key = "particles.radius.list_file";
+constexpr std::string_view mesh_file_key = "container.file";
+constexpr std::size_t longest_mesh = std::size_t{64} << 20U;  // bytes of its file
 
 // A scene may be a stranger's: it names files beside it only.
 void check_curve_name(const Document& document, std::string_view key, const std::string& name) {
@@ -242,7 +245,10 @@ void check_curve_name(const Document& document, std::string_view key, const std:
   if (!leaves) return;
   fail(document.place(key), key,
        fmt::format("is {}; a {} lies in the scene's folder or below it: give a path from there, without \"..\"",
-                   toml_string(name), key == curve_file_key ? "curve" : "list"));
+                   toml_string(name),
+                   key == curve_file_key  ? "curve"
+                   : key == mesh_file_key ? "mesh"
+                                          : "list"));
 }
 
 /// Puts the CSV file's points where the scene's own would stand, the finest first.
@@ -299,8 +305,8 @@ void take_restitution(const Document& document, Contact& contact) {
   contact.damping_ratio = damping;
 }
 
-void read_document(const Document& document, const std::optional<CurveFile>& curve, const MixtureTables& mixture,
-                   Input& in) {
+void read_document(const Document& document, const std::optional<CurveFile>& curve,
+                   const std::optional<CurveFile>& mesh, const MixtureTables& mixture, Input& in) {
   refuse_unknown(document.root(), "");
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   if (document.find("start") != nullptr) in.start.emplace();
@@ -311,6 +317,8 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
     if (key.path == "container.size") check_shape(in, document);
     read_key(key, document, in);
   }
+  if (!in.container.file.empty()) check_curve_name(document, mesh_file_key, in.container.file);
+  take_mesh(document, mesh, in);
   take_vessel(in.container);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
   take_curve(document, curve, in);
@@ -357,8 +365,19 @@ std::optional<CurveFile> named_curve(const std::string& text, const std::string&
   return CurveFile{file, file_text(file, "a CSV file")};
 }
 
+std::optional<CurveFile> named_mesh(const std::string& text, const std::string& path, const Overrides& overrides) {
+  const Document document = with_changes(text, path, overrides);
+  const Node* node = document.find(mesh_file_key);
+  const Node* shape = document.find("container.shape");
+  const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
+  if (name == nullptr || name->empty() || shape == nullptr || describe(*shape) != "\"mesh\"") return std::nullopt;
+  check_curve_name(document, mesh_file_key, *name);
+  const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
+  return CurveFile{file, file_text(file, "an STL or OBJ file", longest_mesh)};
+}
+
 Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
-            const std::optional<CurveFile>& curve) {
+            const std::optional<CurveFile>& curve, const std::optional<CurveFile>& mesh) {
   Document document = with_changes(text, path, overrides);
   const MixtureTables mixture = split_mixture(document);
   Input in;
@@ -367,7 +386,7 @@ Input parse(const std::string& text, const std::string& path, const Overrides& o
   in.particles.radius.diameters = rename_diameters(document);
   take_size_of_cylinder(document);
   try {
-    read_document(document, curve, mixture, in);
+    read_document(document, curve, mesh, mixture, in);
   } catch (const Error& error) {
     if (!in.particles.radius.diameters) throw;
     throw Error(error.code(), in_diameters(error.what()));
@@ -381,23 +400,25 @@ Input parse_part(Document document, const std::string& path) {
   Input in;
   in.file = path;
   in.particles.radius.diameters = rename_diameters(document);
-  read_document(document, std::nullopt, {}, in);
+  read_document(document, std::nullopt, std::nullopt, {}, in);
   return in;
 }
 
 Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides) {
   std::string text;
-  CurveFile curve;
+  CurveFile curve, mesh;
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0) return;
     text = file_text(path, "a scene file (.toml)");
     curve = named_curve(text, path, overrides).value_or(CurveFile{});
+    mesh = named_mesh(text, path, overrides).value_or(CurveFile{});
   });
   text = comm.broadcast(0, text);
   curve = {comm.broadcast(0, curve.path), comm.broadcast(0, curve.text)};
+  mesh = {comm.broadcast(0, mesh.path), comm.broadcast(0, mesh.text)};
+  const auto present = [](const CurveFile& file) { return file.path.empty() ? std::nullopt : std::optional(file); };
   Input in;
-  comm::agree_on(comm,
-                 [&] { in = parse(text, path, overrides, curve.path.empty() ? std::nullopt : std::optional(curve)); });
+  comm::agree_on(comm, [&] { in = parse(text, path, overrides, present(curve), present(mesh)); });
   return in;
 }
 

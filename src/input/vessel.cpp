@@ -6,6 +6,11 @@ namespace packmpi::input {
 
 void take_vessel(Container& container) {
   if (container.shape == VesselShape::box) return;
+  if (container.shape == VesselShape::mesh) {
+    container.size = {container.mesh->high()[0], container.mesh->high()[1], container.height};
+    container.boundary = {Boundary::wall, Boundary::wall};
+    return;
+  }
   const bool frustum = container.shape == VesselShape::frustum;
   const double widest = frustum ? std::max(container.bottom_diameter, container.top_diameter) : container.diameter;
   container.size = {widest, widest, container.height};
@@ -35,6 +40,10 @@ geometry::Container container_of(const Container& container) {
     case VesselShape::annulus:
       box.shape = geometry::Shape::annulus;
       box.core = 0.5 * container.inner_diameter;
+      break;
+    case VesselShape::mesh:
+      box.shape = geometry::Shape::mesh;
+      box.room = container.mesh.get();
       break;
   }
   return box;

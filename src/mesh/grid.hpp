@@ -16,6 +16,19 @@ class Grid {
   /// Triangles of the cells that meet the box from `low` to `high`, each once, in ascending order: all that reach into
   /// it, and others.
   void in_box(const Vec3& low, const Vec3& high, std::vector<int>& found) const;
+  /// The same, calling see(triangle), for some more than once.
+  template <class See>
+  void each_in_box(const Vec3& low, const Vec3& high, See&& see) const {
+    std::array<std::int64_t, 3> from{}, to{};
+    for (std::size_t a = 0; a < 3; ++a) from[a] = step(low[a], a), to[a] = step(high[a], a);
+    for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+      for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+        const std::int64_t row = join({0, y, z});
+        const auto end = start_[static_cast<std::size_t>(row + to[0]) + 1];
+        for (auto k = start_[static_cast<std::size_t>(row + from[0])]; k < end; ++k) see(entries_[k]);
+      }
+    }
+  }
   /// Calls see(first, last) for each cell with its triangles.
   template <class See>
   void each_cell(See&& see) const {

@@ -88,7 +88,77 @@ struct Patch {
   }
 };
 
+/// A polygon, and what of it is on the lower side of a plane across an axis.
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, std::size_t axis, double limit) {
+  std::vector<Vec3> left;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const bool first = a[axis] < limit, second = b[axis] < limit;
+    if (first) left.push_back(a);
+    if (first != second) {
+      const Vec3 &low = first ? a : b, &high = first ? b : a;  // the same from both sides
+      left.push_back(plus(low, times((limit - low[axis]) / (high[axis] - low[axis]), minus(high, low))));
+    }
+  }
+  return left;
+}
+
 }  // namespace
+
+// Caps need not be known: z - height is zero on that above, and that aside does not look up or down.
+double Surface::volume_below(double height, std::size_t axis, double limit) const {
+  Below below;
+  for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
+    const Corners c = shell_.corners(t);
+    const std::vector<Vec3> part = clipped(clipped({c[0], c[1], c[2]}, axis, limit), 2, height);
+    for (std::size_t k = 1; k + 1 < part.size(); ++k) below.add(part[0], part[k], part[k + 1], height);
+  }
+  return below.moment;
+}
+
+double Surface::room_between(double margin, double low, double high) const {
+  const double exact = volume_below(high) - volume_below(low);
+  if (!(margin > 0.0)) return exact;
+  constexpr int side = 48;
+  const Vec3 size{shell_.high[0] - shell_.low[0], shell_.high[1] - shell_.low[1], high - low};
+  std::int64_t inside = 0;
+  for (int k = 0; k < side * side * side; ++k) {
+    const std::array<int, 3> at{k % side, k / side % side, k / (side * side)};
+    const auto place = [&](std::size_t a, double from) { return from + (at[a] + 0.5) / side * size[a]; };
+    const Vec3 x{place(0, shell_.low[0]), place(1, shell_.low[1]), place(2, low)};
+    inside += static_cast<int>(distance(x, margin) >= margin);
+  }
+  return std::min(exact, static_cast<double>(inside) / (side * side * side) * size[0] * size[1] * size[2]);
+}
+
+bool Surface::meets_box(const Vec3& low, const Vec3& high) const {
+  std::vector<int> near;
+  grid_.in_box(low, high, near);
+  return std::ranges::any_of(near, [&](int t) {
+    const Corners c = shell_.corners(static_cast<std::size_t>(t));
+    std::vector<Vec3> part{c[0], c[1], c[2]};
+    for (std::size_t a = 0; a < 3; ++a) {
+      part = clipped(part, a, high[a]);
+      for (Vec3& x : part) x[a] = -x[a];
+      part = clipped(part, a, -low[a]);
+      for (Vec3& x : part) x[a] = -x[a];
+    }
+    return part.size() > 2;
+  });
+}
+
+double Surface::walls_below(double height) const {
+  double area = 0.0;
+  for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
+    if (std::abs(face_[t][2]) > 0.999) continue;
+    const Corners c = shell_.corners(t);
+    const std::vector<Vec3> part = clipped({c[0], c[1], c[2]}, 2, height);
+    for (std::size_t k = 1; k + 1 < part.size(); ++k) {
+      area += 0.5 * norm(cross(minus(part[k], part[0]), minus(part[k + 1], part[0])));
+    }
+  }
+  return area;
+}
 
 double Surface::volume_below(double height) const {
   double sum = 0.0, rest = 0.0;  // Neumaier's

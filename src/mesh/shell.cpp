@@ -74,7 +74,7 @@ void join_corners(Shell& shell, const std::vector<Corners>& triangles, const std
   }
   const Vec3 size = minus(shell.high, shell.low);
   const double largest = *std::ranges::max_element(size), smallest = *std::ranges::min_element(size);
-  if (!(smallest > 0.0) || !(largest < 1e100) || !(largest > 1e-100)) {
+  if (!(smallest > 1e-5 * largest) || !(largest < 1e100) || !(largest > 1e-100)) {
     refuse_shell(name, fmt::format("it is {:g} x {:g} x {:g} m large and closes no room", size[0], size[1], size[2]));
   }
   shell.tolerance = 1e-6 * largest;
@@ -186,42 +186,56 @@ double six_volumes(const Corners& c, const Vec3& from) {
   return dot(minus(c[0], from), cross(minus(c[1], from), minus(c[2], from)));
 }
 
-/// How often the triangles of a part go around a point.
-double turns_around(const Shell& shell, const std::vector<int>& part, int which, const Vec3& x) {
-  double sum = 0.0;  // van Oosterom and Strackee 1983
+/// A part of the surface and the box around it.
+struct Part {
+  std::vector<std::size_t> triangles;
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+};
+
+std::vector<Part> parts_of(const Shell& shell, const std::vector<int>& part) {
+  std::vector<Part> parts(at(shell.mended.parts));
   for (std::size_t t = 0; t < part.size(); ++t) {
-    if (part[t] != which) continue;
+    Part& one = parts[at(part[t])];
+    one.triangles.push_back(t);
+    for (const Vec3& x : shell.corners(t)) {
+      for (std::size_t a = 0; a < 3; ++a)
+        one.low[a] = std::min(one.low[a], x[a]), one.high[a] = std::max(one.high[a], x[a]);
+    }
+  }
+  return parts;
+}
+
+/// Does a part go around a point? By the angle under which it is seen (van Oosterom and Strackee 1983).
+bool goes_around(const Shell& shell, const Part& part, const Vec3& x) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (x[a] < part.low[a] || x[a] > part.high[a]) return false;
+  }
+  double sum = 0.0;
+  for (const std::size_t t : part.triangles) {
     const Corners c = shell.corners(t);
     const Vec3 a = minus(c[0], x), b = minus(c[1], x), d = minus(c[2], x);
     const double la = norm(a), lb = norm(b), ld = norm(d);
     sum += 2.0 * std::atan2(dot(a, cross(b, d)), la * lb * ld + dot(a, b) * ld + dot(b, d) * la + dot(d, a) * lb);
   }
-  return sum / (4.0 * std::numbers::pi);
+  return std::abs(sum) > 2.0 * std::numbers::pi;
 }
 
 /// The outermost look outside, those inside them are holes and look the other way, and so on.
 void look_outside(Shell& shell, const std::vector<int>& part, const std::string& name) {
-  const auto parts = at(shell.mended.parts);
-  std::vector<double> volume(parts, 0.0);
-  std::vector<std::size_t> first(parts, part.size());
-  for (std::size_t t = 0; t < part.size(); ++t) {
-    volume[at(part[t])] += six_volumes(shell.corners(t), shell.low) / 6.0;
-    first[at(part[t])] = std::min(first[at(part[t])], t);
-  }
-  std::vector<bool> wrong(parts);
-  for (std::size_t p = 0; p < parts; ++p) {
-    const double floor = shell.tolerance * shell.tolerance * shell.tolerance;
-    if (!(std::abs(volume[p]) > floor)) {
-      refuse_shell(name,
-                   fmt::format("the part of the surface at {} closes no room", place(shell.corners(first[p])[0])));
+  const std::vector<Part> parts = parts_of(shell, part);
+  std::vector<bool> wrong(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const Vec3 first = shell.corners(parts[p].triangles.front())[0];
+    double volume = 0.0;
+    for (const std::size_t t : parts[p].triangles) volume += six_volumes(shell.corners(t), first) / 6.0;
+    if (!(std::abs(volume) > shell.tolerance * shell.tolerance * shell.tolerance)) {
+      refuse_shell(name, fmt::format("the part of the surface at {} closes no room", place(first)));
     }
     int depth = 0;
-    for (std::size_t other = 0; other < parts; ++other) {
-      if (other == p) continue;
-      const double turns = turns_around(shell, part, static_cast<int>(other), shell.corners(first[p])[0]);
-      depth += static_cast<int>(std::abs(turns) > 0.5);
+    for (std::size_t other = 0; other < parts.size(); ++other) {
+      depth += static_cast<int>(other != p && goes_around(shell, parts[other], first));
     }
-    wrong[p] = (volume[p] < 0.0) != (depth % 2 == 1);
+    wrong[p] = (volume < 0.0) != (depth % 2 == 1);
   }
   for (std::size_t t = 0; t < part.size(); ++t) {
     if (wrong[at(part[t])]) turn(shell, t);
@@ -248,6 +262,24 @@ bool Shell::is_needle(std::size_t triangle) const {
   const Corners c = corners(triangle);
   const double longest = std::max({norm(minus(c[1], c[0])), norm(minus(c[2], c[1])), norm(minus(c[0], c[2]))});
   return !(norm(normal(triangle)) > tolerance * longest);
+}
+
+std::string obj_text(const Shell& shell) {
+  std::string text;
+  for (const Vec3& x : shell.points) text += fmt::format("v {} {} {}\n", x[0], x[1], x[2]);
+  for (const auto& t : shell.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  return text;
+}
+
+std::string text_stl(const Shell& shell) {
+  std::string text = "solid surface\n";
+  for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+    const Vec3 n = unit(shell.normal(t));
+    text += fmt::format("facet normal {:g} {:g} {:g}\n outer loop\n", n[0], n[1], n[2]);
+    for (const Vec3& x : shell.corners(t)) text += fmt::format("  vertex {} {} {}\n", x[0], x[1], x[2]);
+    text += " endloop\nendfacet\n";
+  }
+  return text + "endsolid surface\n";
 }
 
 Shell close(const std::vector<Corners>& triangles, const std::string& name) {

@@ -40,6 +40,11 @@ struct Shell {
 /// more, one side only, no volume, or cuts itself. Pure. Cost: O(triangles) but for ill-shaped ones.
 [[nodiscard]] Shell close(const std::vector<Corners>& triangles, const std::string& name);
 
+/// Its points and triangles as the lines of an OBJ file: read again they are the same doubles.
+[[nodiscard]] std::string obj_text(const Shell& shell);
+/// Its triangles as STL in text.
+[[nodiscard]] std::string text_stl(const Shell& shell);
+
 /// Two triangles that meet where they share nothing; {-1, -1}: there are none. Private to this module.
 [[nodiscard]] std::array<int, 2> first_crossing(const Shell& shell);
 

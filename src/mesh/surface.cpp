@@ -1,6 +1,7 @@
 #include "mesh/surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -128,6 +129,14 @@ Vec3 Surface::outward(const Hit& hit) const {
   return plus(face_[t], face_[static_cast<std::size_t>(other)]);
 }
 
+// From the plane of a triangle, squared, a little less: no place of the triangle is nearer.
+double Surface::off_plane(const Vec3& x, int triangle) const {
+  const auto t = static_cast<std::size_t>(triangle);
+  const Vec3& corner = shell_.points[static_cast<std::size_t>(shell_.triangles[t][0])];
+  const double away = dot(face_[t], minus(x, corner));
+  return (1.0 - 1e-9) * (away * away);
+}
+
 Nearest Surface::nearest(const Vec3& x) const {
   double outside = 0.0;  // of the box around the surface
   for (std::size_t a = 0; a < 3; ++a) {
@@ -135,13 +144,14 @@ Nearest Surface::nearest(const Vec3& x) const {
     outside += beyond * beyond;
   }
   Hit best{endless, {}, -1, 6};
-  std::vector<int> near;
+  const auto look = [&](int t) {
+    if (off_plane(x, t) > best.squared) return;
+    if (const Hit here = hit(x, t); here.squared < best.squared) best = here;
+  };
+  if (!grid_.is_empty(grid_.cell_of(x))) grid_.each_in_box(x, x, look);  // most of them are very near
   for (double half = std::sqrt(outside) + grid_.width();; half *= 2.0) {
     if (best.triangle >= 0) half = std::sqrt(best.squared) * (1.0 + 1e-12);
-    grid_.in_box({x[0] - half, x[1] - half, x[2] - half}, {x[0] + half, x[1] + half, x[2] + half}, near);
-    for (const int t : near) {
-      if (const Hit here = hit(x, t); here.squared < best.squared) best = here;
-    }
+    grid_.each_in_box({x[0] - half, x[1] - half, x[2] - half}, {x[0] + half, x[1] + half, x[2] + half}, look);
     if (best.squared <= half * half) break;
   }
   const double distance = std::sqrt(best.squared);
@@ -157,16 +167,58 @@ double Surface::distance(const Vec3& x, double range) const {
   return std::clamp(nearest(x).distance, -range, range);
 }
 
+double Surface::beyond(const Vec3& x) const {
+  if (!(x[0] - x[0] == 0.0 && x[1] - x[1] == 0.0 && x[2] - x[2] == 0.0)) return x[0] + x[1] + x[2];
+  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
+  constexpr double somewhat = 1e-300;  // inside, wherever that is
+  return steps > 0 ? -std::max((steps - 1) * grid_.width(), somewhat) : -nearest(x).distance;
+}
+
+Vec3 Surface::draw(const Vec3& u, double r, double low, double high) const {
+  constexpr int most = 256;
+  const Vec3 from{shell_.low[0] + r, shell_.low[1] + r, std::max(low, shell_.low[2] + r)};
+  const Vec3 to{shell_.high[0] - r, shell_.high[1] - r, std::min(high, shell_.high[2] - r)};
+  Vec3 now = u;
+  std::uint64_t state = 0;
+  for (const double one : u) state = stir(state ^ std::bit_cast<std::uint64_t>(one));
+  for (int k = 0; k < most; ++k) {
+    Vec3 x{};
+    for (std::size_t a = 0; a < 3; ++a) x[a] = from[a] + now[a] * (to[a] - from[a]);
+    if (to[2] >= from[2] && distance(x, r) >= r) return x;
+    for (double& one : now) one = static_cast<double>((state = stir(state)) >> 11U) * 0x1p-53;
+  }
+  return {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), std::nan("")};
+}
+
+void Surface::touches(const Vec3& x, double range, double behind,
+                      const std::function<void(std::int32_t, const Touch&)>& found) const {
+  NearFeatures close;
+  near(x, range, behind, close);
+  const Table table = features_.table(behind);
+  for (std::size_t k = 0; k < close.feature.size(); ++k) {
+    const Touch here = touch(table, close.feature[k], close.triangles.data(), close.begin(k), close.end[k], x.data());
+    if (here.distance < range) found(close.feature[k], here);
+  }
+}
+
 void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
   found.clear();
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
   if ((std::abs(steps) - 1) * grid_.width() >= range) return;
   const Table table = features_.table(behind);
-  grid_.in_box({x[0] - range, x[1] - range, x[2] - range}, {x[0] + range, x[1] + range, x[2] + range}, found.scratch);
   const double square = range * range;
   const auto close_to = [&](const Vec3& place) { return dot(minus(x, place), minus(x, place)) < square; };
-  std::erase_if(found.scratch, [&](int t) { return !(hit(x, t).squared < square); });
-  for (const int t : found.scratch) {
+  found.hits.clear();
+  found.seen.resize(shell_.triangles.size());
+  ++found.search;
+  grid_.each_in_box({x[0] - range, x[1] - range, x[2] - range}, {x[0] + range, x[1] + range, x[2] + range}, [&](int t) {
+    std::uint32_t& seen = found.seen[static_cast<std::size_t>(t)];
+    if (seen == found.search) return;
+    seen = found.search;
+    if (off_plane(x, t) < square && hit(x, t).squared < square) found.hits.push_back(t);
+  });
+  std::ranges::sort(found.hits);
+  for (const int t : found.hits) {
     const std::int32_t face = features_.face_of(static_cast<std::size_t>(t));
     const double* plane = table.faces + 4 * std::int64_t{face};
     if (plane[3] - along(plane, x.data()) > -(behind + range)) found.feature.push_back(face);
@@ -187,7 +239,7 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   found.feature.erase(std::unique(found.feature.begin(), found.feature.end()), found.feature.end());
   for (const std::int32_t feature : found.feature) {
     if (feature < features_.edge_begin()) {
-      for (const int t : found.scratch) {
+      for (const int t : found.hits) {
         if (features_.face_of(static_cast<std::size_t>(t)) == feature) found.triangles.push_back(t);
       }
     }

@@ -127,6 +127,7 @@ void Neighborhood::build_pairs(const particles::Store& store, std::optional<doub
 void Neighborhood::build_walls(const particles::Store& store) {
   walls_.particle.clear();
   walls_.wall.clear();
+  if (scene_->container.is_mesh()) return build_features(store);
   const double walls_move = scene_->in.confinement ? 0.5 * scene_->skin : 0.0;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double range = extent_[static_cast<std::size_t>(i)] + walls_move;
@@ -134,6 +135,24 @@ void Neighborhood::build_walls(const particles::Store& store) {
       walls_.particle.push_back(i);
       walls_.wall.push_back(wall);
     });
+  }
+}
+
+// The faces, edges and corners of a mesh.
+void Neighborhood::build_features(const particles::Store& store) {
+  const geometry::Container& vessel = scene_->container;
+  walls_.near.clear();
+  walls_.near_begin.assign(1, 0);
+  mesh::NearFeatures found;
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    vessel.room->near(store.position(i), extent_[static_cast<std::size_t>(i)], vessel.behind, found);
+    const auto before = static_cast<std::int32_t>(walls_.near.size());
+    walls_.near.insert(walls_.near.end(), found.triangles.begin(), found.triangles.end());
+    for (std::size_t k = 0; k < found.feature.size(); ++k) {
+      walls_.particle.push_back(i);
+      walls_.wall.push_back(static_cast<Wall>(static_cast<std::int32_t>(geometry::most_surfaces) + found.feature[k]));
+      walls_.near_begin.push_back(before + found.end[k]);
+    }
   }
 }
 

@@ -24,6 +24,9 @@ struct PairList {
 struct WallList {
   std::vector<LocalIndex> particle;
   std::vector<Wall> wall;
+  /// Of a mesh: triangles of its faces that each entry's particle may be above, `near` from near_begin[entry] up to
+  /// near_begin[entry + 1]. Of other containers both are empty.
+  std::vector<std::int32_t> near_begin, near;
 };
 
 }  // namespace packmpi::neighbor

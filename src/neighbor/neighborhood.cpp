@@ -163,6 +163,7 @@ bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const 
   const geometry::Container& box = scene_->container;
   const Vec3 x = store.position(i);
   const double z = x[static_cast<std::size_t>(box.vertical())];
+  if (box.is_mesh()) return norm(x) < HUGE_VAL && !box.room->surely_outside(x);
   return box.beyond(x) < store.radius(i) && z < highest * (box.height() + scene_->in.layers.thickness);
 }
 
@@ -427,6 +428,7 @@ std::size_t Neighborhood::bytes() const noexcept {
     total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);
   }
   total += memory_.bytes();
+  total += (walls_.near.capacity() + walls_.near_begin.capacity()) * sizeof(std::int32_t);
   return total + walls_.particle.capacity() * (sizeof(LocalIndex) + sizeof(Wall));
 }
 

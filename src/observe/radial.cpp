@@ -93,7 +93,7 @@ double core_of(const Specimen& pack, double margin) {
 
 RadialProfile radial_profile(const Specimen& pack) {
   RadialProfile result;
-  if (pack.scene.container.is_box() || !(pack.bulk.depth() > 0.0)) return result;
+  if (pack.scene.container.is_box() || pack.scene.container.is_mesh() || !(pack.bulk.depth() > 0.0)) return result;
   result.profile = profile_from(pack, Surface::mantle);
   if (pack.scene.container.has(Surface::inner)) result.from_inner = profile_from(pack, Surface::inner);
   result.from_walls = core_in_diameters * 2.0 * pack.scene.sizes.mean();

@@ -56,8 +56,8 @@ std::vector<HistoryRow> read_histories(const disk::SealedFile& file, const comm:
   const auto other = file.numbers<std::int64_t>("/contacts/other", range, 1);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     rows[k].holder = holder[k], rows[k].other = other[k];
-    const bool possible = holder[k] >= 0 && holder[k] < particles && other[k] < holder[k] &&
-                          other[k] >= -GlobalId{geometry::most_surfaces};
+    const bool possible =
+        holder[k] >= 0 && holder[k] < particles && other[k] < holder[k] && other[k] >= -GlobalId{geometry::most_walls};
     if (!possible)
       refuse_contacts(fmt::format("its contact {} has ends that cannot be", begin + static_cast<std::int64_t>(k)));
   }

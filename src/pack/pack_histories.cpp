@@ -77,7 +77,7 @@ void read_walls(const disk::SealedFile& file, Rank rank, int ranks, Histories& i
 
 void check_row(const HistoryRow& row, std::int64_t particles) {
   const bool possible = row.holder >= 0 && row.holder < particles && row.other < row.holder &&
-                        row.other >= -GlobalId{geometry::most_surfaces};
+                        row.other >= -GlobalId{geometry::most_walls};
   if (!possible) refuse_springs(fmt::format("its contact of {} and {} has ends that cannot be", row.other, row.holder));
   if (std::ranges::all_of(row.values, [](double x) { return std::isfinite(x); })) return;
   refuse_springs(fmt::format("the contact of {} and {} remembers what is no number", row.other, row.holder));

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "input/read.hpp"
 #include "input/words.hpp"
@@ -59,7 +60,10 @@ std::string forbidden_changes(const std::string& before, const std::string& now,
   for (const auto& [key, value] : new_values) keys.insert(key);
   const auto shown = [](const auto& values, const std::string& key) {
     const auto found = values.find(key);
-    return found == values.end() ? std::string("absent") : found->second;
+    if (found == values.end()) return std::string("absent");
+    if (key != "container.surface") return found->second;
+    return fmt::format("a mesh of {} bytes with digest {:016x}", found->second.size(),
+                       fnv_add(fnv_start, found->second));
   };
   // More layers after the final stage are not the layers of a run that never had it.
   const std::string window = shown(new_values, "dynamics.window"),
@@ -82,6 +86,7 @@ std::string container_change(const input::Container& before, const input::Contai
     return fmt::format("a container of the shape \"{}\", the scene in one of the shape \"{}\"; give that of the pack",
                        input::word(before.shape), input::word(now.shape));
   }
+  if (now.surface != before.surface) return "a mesh of another surface than the scene's; give that of the pack";
   const bool wall = now.bottom_diameter == before.bottom_diameter && now.top_diameter == before.top_diameter &&
                     now.inner_diameter == before.inner_diameter;
   const bool slope = now.shape != input::VesselShape::frustum || now.size.back() == before.size.back();

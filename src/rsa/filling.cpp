@@ -1,6 +1,7 @@
 #include "rsa/filling.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "geometry/volume.hpp"
@@ -42,7 +43,8 @@ Conflicts::Outcome Filling::fire(const Volley& volley, particles::Store& store) 
   waiting_.clear();
   free_.clear();
   for (const Trial& trial : trials) {
-    if (!placed_.overlaps(trial.sphere)) {
+    const bool nowhere = std::isnan(trial.sphere.centre[2]);
+    if (!nowhere && !placed_.overlaps(trial.sphere)) {
       free_.push_back(trial);
     } else if (trial.attempt == volley.last()) {  // the particle goes on from the rank where its last trial fell
       wait(trial);

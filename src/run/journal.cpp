@@ -96,7 +96,7 @@ void Journal::progress(double share, double kinetic_energy, double top) {
   last_shown_ = now;
   const double steps =
       static_cast<double>(bed_.stepper.work().particle_steps) * bed_.comm.size();  // about: all ranks alike
-  const bool waits = relaxing_ && share >= 1.0;  // for rest: nobody knows how long
+  const bool waits = relaxing_ && share >= 1.0;                                    // for rest: nobody knows how long
   const double left = waits ? -1.0 : seconds_left(share);
   log::event_for_programs("progress", {{"phase", std::string(relaxing_ ? "relaxation" : "layer")},
                                        {"layer", std::ssize(bed_.progress.first_ids)},
@@ -109,11 +109,11 @@ void Journal::progress(double share, double kinetic_energy, double top) {
                                        {"particle_steps_per_second", steps / now},
                                        {"seconds_left", left}});
   // Under 80 columns: a longer line would wrap, and a wrapped line cannot be rewritten.
-  const std::string line = fmt::format(
-      "{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {}",
-      relaxing_ ? "relaxation" : "layer", bed_.progress.first_ids.size(), 100.0 * share,
-      bed_.progress.count - bed_.progress.moving_from, top, kinetic_energy, steps / now * 1e-6,
-      waits ? "until at rest" : text::duration(left) + " left");
+  const std::string line =
+      fmt::format("{} {:3d} {:3.0f} %  {} moving  top {:.4g} m  KE {:.1e} J  {:.1f}e6 steps/s  {}",
+                  relaxing_ ? "relaxation" : "layer", bed_.progress.first_ids.size(), 100.0 * share,
+                  bed_.progress.count - bed_.progress.moving_from, top, kinetic_energy, steps / now * 1e-6,
+                  waits ? "until at rest" : text::duration(left) + " left");
   if (terminal_) {
     note(fmt::format("\r{}\033[K", line));
   } else {

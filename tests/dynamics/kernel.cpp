@@ -104,6 +104,7 @@ std::vector<CloudPlan> plans() {
       {.owned = 40, .ghosts = 0, .skin = -0.9, .seed = 8},  // hardly any pair
       {.owned = 120, .ghosts = 30, .near_field = true, .seed = 9},
       {.owned = 150, .ghosts = 20, .round = true, .seed = 10},
+      {.owned = 150, .ghosts = 20, .mesh = true, .seed = 11},
   };
 }
 
@@ -162,6 +163,7 @@ StepReport step_in_parts(const dynamics::Kernel kernel, Cloud& cloud, support::D
     for (part.pairs = 0; pairs_done < pairs && part.first[part.pairs] < cut; ++pairs_done) ++part.pairs;
     part.wall_particle = cloud.walls.particle.data() + walls_done;
     part.wall = cloud.walls.wall.data() + walls_done;
+    if (part.near_begin != nullptr) part.near_begin = cloud.walls.near_begin.data() + walls_done;
     for (part.walls = 0; walls_done < walls && part.wall_particle[part.walls] < cut; ++walls_done) ++part.walls;
     report = dynamics::together(report, kernel(part));
   }

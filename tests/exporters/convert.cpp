@@ -384,6 +384,35 @@ TEST_F(Convert, WallsOfVesselsAreThoseThatACodeHas) {
                        "from the axis of the annulus"));
 }
 
+TEST_F(Convert, AMeshIsCarriedAsTriangles) {
+  std::string text = scene_text(3, "");
+  const mesh::Surface surface(testing::box({0, 0, 0}, {1.0, 1.0, 1.5}, 2), "box");
+  const std::size_t from = text.find("dimension"), to = text.find("[particles]");
+  text.replace(from, to - from,
+               "shape = \"mesh\"\nheight = 0.6\nsurface = \"\"\"\n" + mesh::obj_text(surface.shell()) + "\"\"\"\n");
+  const std::string path = make_pack_of(50, 3, text);
+  const Converted yade = convert_pack(comm_, {.pack = path, .format = "yade", .force = true});
+  const std::string script = contents(yade.files.at(1));
+  EXPECT_TRUE(contains(script, "walls = [utils.facet([points[k] for k in t], material='walls') for t in triangles]"));
+  EXPECT_TRUE(contains(script, "    (0.5, 0, 0.75),\n"));
+  EXPECT_TRUE(contains(script, "# mesh: the room of 1.5 m3 inside 48 triangles, from z = 0 to 1.5"));
+  const Converted liggghts = convert_pack(comm_, {.pack = path, .format = "liggghts", .force = true});
+  ASSERT_EQ(liggghts.files.size(), 3U);
+  EXPECT_TRUE(contains(contents(liggghts.files[1]), "mesh/surface file ${surface} type 2"));
+  const mesh::Surface again(mesh::read_triangles(contents(liggghts.files[2]), "a.stl"), "a");
+  EXPECT_EQ(again.shell().triangles.size(), 48U);
+  EXPECT_EQ(again.volume(), surface.volume());
+  EXPECT_TRUE(contains(refused({.pack = path, .format = "lammps", .force = true}, ExitCode::bad_input),
+                       "use liggghts or yade, or"));
+  EXPECT_TRUE(contains(
+      refused({.pack = path, .format = "csv", .cut = "cylinder:diameter=1,height=1.4,z=0.8,x=0.6", .force = true},
+              ExitCode::bad_input),
+      "along x"));
+  const Converted cut = convert_pack(
+      comm_, {.pack = path, .format = "csv", .cut = "cylinder:diameter=0.9,height=0.5,z=0.3", .force = true});
+  EXPECT_GT(cut.particles, 0);
+}
+
 TEST_F(Convert, EveryCentreIsInsideTheBoxOfLammps) {
   for (const int dimension : {2, 3}) {
     const std::string path = make_pack(100, dimension, dimension == 3 ? "\"wall\", \"periodic\"" : "\"wall\"");

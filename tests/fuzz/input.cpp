@@ -84,6 +84,7 @@ bool same(const document::Node& asked, const document::Node& got) {
 /// Files, whose contents stand there instead; points, the finest first; the number of a list, which may be 0.
 bool is_rewritten(const std::string& key) {
   return key == "particles.radius.diameter_curve_file" || key == "particles.radius.list_file" ||
+         key == "container.file" || key == "container.unit" || key == "container.surface" ||
          key == "particles.radius.diameter_curve" || key == "particles.count";
 }
 

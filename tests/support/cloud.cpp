@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "geometry/container.hpp"
+#include "mesh/shapes.hpp"
 #include "scene/mixture.hpp"
 #include "scene/pair_channels.hpp"
 
@@ -62,6 +63,14 @@ Cloud::Cloud(const scene::Features& f, const CloudPlan& p) : features(f), plan(p
   const double count = plan.owned + plan.ghosts;  // an edge that packs them tightly
   const double edge = 1.7 * radius * (f.dimension == 3 ? std::cbrt(count) : std::sqrt(count)) + 4.0 * radius;
   size = {edge, f.dimension == 3 ? edge : 0.0, 0.0};
+  if (plan.mesh && f.dimension == 3 && !f.periodic) {
+    testing::Soup soup = testing::box({0, 0, 0}, {edge, edge, edge}, 3);
+    for (const mesh::Corners& corners :
+         testing::box({0.3 * edge, 0.35 * edge, 0.4 * edge}, {0.6 * edge, 0.6 * edge, 0.6 * edge}, 2)) {
+      soup.push_back(corners);  // looks outside, and is turned: a hole
+    }
+    room = std::make_shared<const mesh::Surface>(soup, "room");
+  }
   fill(dice);
   list(dice);
   make_ring(dice);
@@ -130,6 +139,18 @@ void Cloud::list(Dice& dice) {
       walls.particle.push_back(i);
       walls.wall.push_back(wall);
     };
+    if (room) {
+      mesh::NearFeatures found;
+      room->near({a[0], a[1], a[2]}, r + margin, 0.25 * radius, found);
+      if (walls.near_begin.empty()) walls.near_begin.push_back(0);
+      const auto before = static_cast<std::int32_t>(walls.near.size());
+      walls.near.insert(walls.near.end(), found.triangles.begin(), found.triangles.end());
+      for (std::size_t k = 0; k < found.feature.size(); ++k) {
+        near(0.0, static_cast<neighbor::Wall>(static_cast<std::int32_t>(geometry::most_surfaces) + found.feature[k]));
+        walls.near_begin.push_back(before + found.end[k]);
+      }
+      continue;
+    }
     near(a[dimension - 1], neighbor::Wall::floor);
     if (plan.round && !features.periodic) {
       for (std::size_t k = 0; k < geometry::most_round; ++k) {
@@ -268,6 +289,9 @@ dynamics::StepData Cloud::data() {
           .periodic = periodic,
           .planes = dynamics::planes_of({features.dimension, size, periodic}),
           .round = round_walls(),
+          .mesh = room ? room->features().table(0.25 * radius) : mesh::Table{},
+          .near_begin = walls.near_begin.empty() ? nullptr : walls.near_begin.data(),
+          .near = walls.near.data(),
           .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
           .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }

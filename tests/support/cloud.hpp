@@ -1,6 +1,7 @@
 /// A random heap of particles with lists, for kernel tests: overlapping, at and beyond walls, with ghosts.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct CloudPlan {
   LocalIndex window = 1 << 30;  ///< list only pairs of owned with second - first below this
   double ring_room = 1.0;       ///< slots of the ring, at least this times the window
   bool round = false;           ///< round walls stand around, where no axis is periodic
+  bool mesh = false;            ///< in 3D walls are those of a mesh: a room with a cube in it
   bool near_field = false;      ///< the ring holds every particle, prefilled
   std::uint64_t seed = 1;
 };
@@ -60,6 +62,7 @@ struct Cloud {
   dynamics::Law law{};
   Vec3 size{};
   std::array<bool, 2> periodic{};
+  std::shared_ptr<const mesh::Surface> room;  // of a mesh
   std::vector<Line> ring;
   std::int64_t ring_mask = 0;
   double drag = 0.0;

@@ -1,6 +1,7 @@
 #include "support/oracle_rsa.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/volume.hpp"
 
@@ -10,6 +11,7 @@ namespace {
 // True if the sphere was placed.
 bool try_place(const scene::Scene& scene, const PlacedSphere& sphere, Rsa& result) {
   ++result.trials;
+  if (std::isnan(sphere.position[2])) return false;
   for (const PlacedSphere& other : result.placed) {
     if (rsa::overlap(scene.container, sphere.position, sphere.radius, other.position, other.radius)) return false;
   }

@@ -30,9 +30,14 @@ def use_virtual_screen() -> None:
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 640x480x24", sys.executable] + sys.argv)
 
 
+def highest(pack: Pack) -> float:
+    """What the picture has to show [m]: of a vessel of triangles all of it."""
+    return float(max(pack.top(), vessel.mesh(pack)[0][:, 2].max())) if pack.shape == "mesh" else pack.top()
+
+
 def extent(pack: Pack) -> float:
     """The longest edge [m]. What VTK sees is divided by it: its depths are made for lengths of about 1, not for micrometres."""
-    return float(max(pack.size[0], pack.size[1], pack.top()))
+    return float(max(pack.size[0], pack.size[1], highest(pack)))
 
 
 def spheres_actor(pack: Pack, rgba: Floats) -> Any:
@@ -131,6 +136,11 @@ def mantle_actor(centre: float, line: Floats) -> Any:
     data = vtk.vtkPolyData()
     data.SetPoints(points)
     data.SetPolys(cells)
+    return glass_actor(data)
+
+
+def glass_actor(data: Any) -> Any:
+    """What one sees through."""
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputData(data)
     actor = vtk.vtkActor()
@@ -140,6 +150,24 @@ def mantle_actor(centre: float, line: Floats) -> Any:
     look.SetOpacity(0.07)
     look.LightingOff()
     return actor
+
+
+def mesh_actors(pack: Pack) -> list[Any]:
+    """A vessel of triangles: its sides as clear as glass, its edges, and the target height on it."""
+    corners, triangles = vessel.mesh(pack)
+    corners = corners / extent(pack)
+    points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
+    for corner in corners:
+        points.InsertNextPoint(*corner)
+    for triangle in triangles:
+        cells.InsertNextCell(3)
+        for corner in triangle:
+            cells.InsertCellPoint(int(corner))
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    marks = vessel.section(corners, triangles, float(pack.size[-1] / extent(pack)))
+    return [lines_actor(vessel.mesh_edges(corners, triangles), INK, 0.0015), lines_actor(marks, TARGET, 0.0025), glass_actor(data)]
 
 
 def vessel_actors(pack: Pack) -> list[Any]:
@@ -160,6 +188,8 @@ def container_actors(pack: Pack) -> list[Any]:
     """The edges of the container, and the target height; or a lid that lets what is under it be seen; of a round one its wall, too."""
     lx, ly, target = pack.size / extent(pack)
     top = (pack.top() if pack.lid is None else pack.lid) / extent(pack)
+    if pack.shape == "mesh":
+        return mesh_actors(pack)
     if pack.shape != "box":
         return vessel_actors(pack)
     upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
@@ -172,7 +202,7 @@ def container_actors(pack: Pack) -> list[Any]:
 
 def aim(renderer: Any, pack: Pack) -> None:
     """A camera far away, a little above, that sees two sides and the surface."""
-    corner = np.array([pack.size[0], pack.size[1], pack.top()]) / extent(pack)
+    corner = np.array([pack.size[0], pack.size[1], highest(pack)]) / extent(pack)
     direction = np.array([-0.50, -1.0, 0.50])
     angle = 14.0  # degrees, of view
     distance = 0.5 * np.linalg.norm(corner) / np.sin(0.5 * np.radians(angle))

@@ -1,7 +1,9 @@
-"""The walls of vessels that are bodies of revolution."""
+"""The walls of vessels: bodies of revolution, and meshes."""
+import tomllib
+
 import numpy as np
 
-from .pack import Floats, Pack
+from .pack import Floats, Integers, Pack
 
 
 def outlines(pack: Pack, top: float) -> list[Floats]:
@@ -25,12 +27,54 @@ def radii_at(pack: Pack, height: float) -> list[float]:
     return [float(np.interp(height, line[:, 0], line[:, 1])) for line in outlines(pack, max(height, float(pack.size[-1]), pack.top()))]
 
 
+def mesh(pack: Pack) -> tuple[Floats, Integers]:
+    """Corners [m] and triangles, three corners each, of a pack's vessel whose shape is "mesh"; they stand in its scene."""
+    text = tomllib.loads(pack.provenance["effective_input"])["container"]["surface"]
+    points, triangles = [], []
+    for line in text.splitlines():
+        kind, *rest = line.split()
+        if kind == "v":
+            points.append([float(x) for x in rest])
+        elif kind == "f":
+            triangles.append([int(k) - 1 for k in rest])
+    return np.array(points), np.array(triangles)
+
+
+def mesh_edges(points: Floats, triangles: Integers, least: float = 10.0) -> list[tuple[Floats, Floats]]:
+    """The edges of a mesh across which it turns by `least` degrees or more."""
+    normals = np.cross(points[triangles[:, 1]] - points[triangles[:, 0]], points[triangles[:, 2]] - points[triangles[:, 0]])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    across: dict[tuple[int, int], list[int]] = {}
+    for number, triangle in enumerate(triangles):
+        for k in range(3):
+            a, b = int(triangle[k]), int(triangle[(k + 1) % 3])
+            across.setdefault((min(a, b), max(a, b)), []).append(number)
+    limit = np.cos(np.radians(least))
+    return [(points[a], points[b]) for (a, b), both in across.items() if len(both) == 2 and normals[both[0]] @ normals[both[1]] < limit]
+
+
+def section(points: Floats, triangles: Integers, height: float) -> list[tuple[Floats, Floats]]:
+    """The lines in which a mesh cuts a height."""
+    found = []
+    for triangle in triangles:
+        cut = []
+        for k in range(3):
+            a, b = points[triangle[k]], points[triangle[(k + 1) % 3]]
+            if (a[2] < height) != (b[2] < height):
+                cut.append(a + (height - a[2]) / (b[2] - a[2]) * (b - a))
+        if len(cut) == 2:
+            found.append((cut[0], cut[1]))
+    return found
+
+
 def words(pack: Pack, scale: float, unit: str) -> str:
     """What it is and how large: "a cylinder, 60 x 90 mm"."""
     width, height = scale * pack.size[0], scale * pack.size[-1]
     if pack.shape == "frustum":
         low, high = scale * pack.summary["bottom_diameter"], scale * pack.summary["top_diameter"]
         return f"a frustum, {low:g} to {high:g} x {height:g} {unit}"
+    if pack.shape == "mesh":
+        return f"a mesh, {width:g} x {scale * pack.size[1]:g} x {height:g} {unit}"
     if pack.shape == "sphere":
         return f"a sphere of {width:g} {unit}, up to {height:g} {unit}"
     if pack.shape == "annulus":

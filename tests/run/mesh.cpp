@@ -1,0 +1,150 @@
+// Vessels of triangles: what a particle feels of faces, edges and corners, and packs in them: one on any number of
+// ranks and after a stop, none of it outside, as dense as in the shape that the triangles make.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "geometry/volume.hpp"
+#include "input/read.hpp"
+#include "mesh/shapes.hpp"
+#include "pack/pack.hpp"
+#include "run/make_pack.hpp"
+
+namespace packmpi::run {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Soup;
+
+/// A hopper with a beam across it, 160 mm wide.
+Soup hopper_with_beam() {
+  Soup soup = testing::hopper(0.75, 3);
+  for (const mesh::Corners& c : testing::box({-0.5, -0.15, 1.0}, {0.5, 0.15, 1.3}, 2)) soup.push_back(c);
+  return testing::moved(soup, [](const Vec3& x) {
+    return Vec3{0.08 * (x[0] + 1.0), 0.08 * (x[1] + 1.0), 0.08 * x[2]};
+  });
+}
+
+std::string text_of(const Soup& soup, double height, const std::string& more = "") {
+  const mesh::Surface surface(soup, "test");
+  return "fidelity = \"balanced\"\n[container]\nshape = \"mesh\"\nsurface = \"\"\"\n" +
+         mesh::obj_text(surface.shell()) + fmt::format("\"\"\"\nheight = {}\n", height) +
+         "[particles]\ndensity = 1000.0\nyoungs_modulus = 5.0e6\npoisson_ratio = 0.25\n"
+         "radius = { distribution = \"equal\", value = 0.01 }\n"
+         "[layers]\nthickness = 0.08\nfraction = 0.25\n" +
+         more +
+         "[jamming]\ngravity = 9.81\n"
+         "[contact]\nfriction = 0.3\ndamping_ratio = 0.3\n[checkpoint]\nevery = \"off\"\n";
+}
+
+class PackInMesh : public ::testing::Test {
+ protected:
+  comm::Comm world_{MPI_COMM_WORLD};
+  std::string folder_ =
+      world_.broadcast(0, (fs::temp_directory_path() / ("packmpi_mesh_" + std::to_string(::getpid()))).string());
+  report::RunRecord record_;
+  std::string words_;
+
+  void TearDown() override {
+    world_.barrier();
+    if (world_.rank() == 0) fs::remove_all(folder_);
+    world_.barrier();
+  }
+  static scene::Scene scene_of(const std::string& text) { return scene::build(input::parse(text, "shape.toml", {})); }
+  /// On the first `ranks` ranks.
+  ExitCode run(const scene::Scene& scene, int ranks, std::int64_t steps, const char* restart) {
+    Options options;
+    options.folder = folder_;
+    options.verbosity = log::Verbosity::quiet;
+    options.max_steps = steps;
+    options.restart = restart;
+    options.force = options.restart.empty();
+    MPI_Comm part = MPI_COMM_NULL;
+    MPI_Comm_split(MPI_COMM_WORLD, world_.rank() < ranks ? 0 : 1, world_.rank(), &part);
+    ExitCode code = ExitCode::done;
+    if (world_.rank() < ranks) {
+      const comm::Comm comm(part);
+      try {
+        record_ = make_pack(comm, scene, options);
+      } catch (const Error& error) {
+        code = error.code();
+        words_ = error.what();
+      }
+    }
+    MPI_Comm_free(&part);
+    return static_cast<ExitCode>(world_.max(static_cast<std::int64_t>(code)));
+  }
+  [[nodiscard]] pack::PackRows rows() const {
+    world_.barrier();
+    return pack::read_pack(folder_ + "/shape.hdf");
+  }
+};
+
+TEST_F(PackInMesh, IsOneOnAnyNumberOfRanksAndAfterAStop) {
+  const scene::Scene scene = scene_of(text_of(hopper_with_beam(), 0.12));
+  ASSERT_EQ(run(scene, world_.size(), 0, ""), ExitCode::done) << words_;
+  const pack::PackRows first = rows();
+  const auto expect_same = [&] {
+    const pack::PackRows again = rows();
+    EXPECT_EQ(again.position, first.position);
+    EXPECT_EQ(again.velocity, first.velocity);
+    EXPECT_EQ(again.spin, first.spin);
+  };
+  EXPECT_EQ(run(scene, 1, 0, ""), ExitCode::done);
+  expect_same();
+  EXPECT_EQ(run(scene, 1, 700, ""), ExitCode::stopped_early);
+  const scene::Scene other = scene_of(text_of(testing::moved(hopper_with_beam(),
+                                                             [](const Vec3& x) {
+                                                               return Vec3{x[0], x[1], 1.01 * x[2]};
+                                                             }),
+                                              0.12));
+  EXPECT_EQ(run(other, 2, 0, "auto"), ExitCode::bad_checkpoint);
+  if (world_.rank() == 0) {
+    EXPECT_NE(words_.find("container.surface: a mesh of "), std::string::npos) << words_;
+  }
+  EXPECT_EQ(run(scene, 2, 0, "auto"), ExitCode::done);
+  expect_same();
+  // Inside, all of it; and full.
+  const geometry::Container& vessel = scene.container;
+  ASSERT_GT(first.id.size(), 150U);
+  double solid = 0.0;
+  for (std::size_t k = 0; k < first.id.size(); ++k) {
+    EXPECT_GT(vessel.room->nearest(first.position[k]).distance, 0.97 * first.radius[k]) << k;
+    solid += geometry::volume_below(3, first.radius[k], first.position[k][2], vessel.height());
+  }
+  if (world_.rank() != 0) return;
+  EXPECT_EQ(record_.audit.outside, 0);
+  EXPECT_NEAR(record_.phi, solid / vessel.volume_between(0.0, vessel.height()), 1e-9);
+  EXPECT_GT(record_.phi_bulk, 0.45);  // few diameters wide
+  EXPECT_LT(record_.phi_bulk, 0.62);
+  EXPECT_NEAR(record_.rest.support, 1.0, 0.05);
+}
+
+/// A box given by triangles is the box, but for rounding; what that does later is chance.
+TEST_F(PackInMesh, ABoxOfTrianglesIsTheBox) {
+  const std::string more =
+      "maximum = 1\nduration = 0.02\nregion = \"container\"\n[rest]\nwait = 0\n[dynamics]\nrelaxation = 0\n";
+  std::string text = text_of(testing::box({0, 0, 0}, {0.16, 0.12, 0.3}, 4), 0.2, more);
+  const scene::Scene of_mesh = scene_of(text);
+  const std::size_t from = text.find("shape ="), to = text.find("[particles]");
+  const scene::Scene of_box = scene_of(text.replace(from, to - from, "size = [0.16, 0.12, 0.2]\n"));
+  EXPECT_NEAR(of_mesh.container.volume_between(0.0, 0.2), of_box.container.volume_between(0.0, 0.2), 1e-15);
+  (void)run(of_mesh, world_.size(), 0, "");
+  const pack::PackRows a = rows();
+  const double fraction = record_.phi;
+  (void)run(of_box, world_.size(), 0, "");
+  const pack::PackRows b = rows();
+  EXPECT_NEAR(fraction, record_.phi, 1e-9);
+  ASSERT_EQ(a.id.size(), b.id.size());
+  EXPECT_GT(a.id.size(), 80U);
+  for (std::size_t k = 0; k < a.id.size(); ++k) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a.position[k][c], b.position[k][c], 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace packmpi::run
