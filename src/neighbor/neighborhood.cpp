@@ -367,10 +367,10 @@ void Neighborhood::remember_positions(const particles::Store& store) {
     for (std::size_t i = 0; i < total; ++i) x[i] = store.record(static_cast<LocalIndex>(i))[a];
   }
   resize_tightly(extent_, total);
-  const auto moving = static_cast<std::size_t>(store.owned() + halo_.ghosts());  // behind them what stands still
+  const LocalIndex moving = store.owned() + halo_.ghosts();  // behind them what stands still
   for (std::size_t i = 0; i < total; ++i) {
     const auto slot = static_cast<LocalIndex>(i);
-    extent_[i] = store.radius(slot) + (i < moving ? margins_.of(norm(store.velocity(slot))) : 0.0);
+    extent_[i] = store.radius(slot) + (slot < moving ? margins_.of(norm(store.velocity(slot))) : 0.0);
   }
 }
 
