@@ -23,12 +23,12 @@ except ModuleNotFoundError as missing:   # numpy
     print(f"scaling: {missing}")
     sys.exit(77)   # a test that is skipped
 
-RADIUS, SKIN = 0.01, 0.1                 # m; skin in radii (src/scene/scene.cpp)
-RANGE = (2.0 + SKIN) * RADIUS            # m: a ghost is nearer than this to another rank's column
+RADIUS, MARGIN = 0.01, 0.2               # m; the largest margin of a particle in lists, in radii (src/scene/scene.cpp)
+RANGE = 2.0 * (1.0 + MARGIN) * RADIUS    # m: a ghost is nearer than this to another rank's column
 COLUMNS = 12                             # of a rank's block, along each axis that is cut
 TOLERANCE = 0.01                         # of the ghost formula
 GROWTH = 1.05                            # of messages and bytes a rank, from the least ranks with all neighbours to the most
-RANGE_53 = (2.0 + SKIN) * 0.02           # m, of input/million.toml
+RANGE_53 = 2.0 * (1.0 + MARGIN) * 0.02   # m, of input/million.toml
 LIVE_BYTES = 72                          # of a ghost a step: position, velocity, spin
 MESSAGES = 2                             # to each neighbour rank a step: one for each half of the ghosts
 RECORD_BYTES = 104                       # of a particle that changes owners: its record and its id
