@@ -1,7 +1,4 @@
 // LAMMPS: read_data for atom_style sphere, and an in-file with the scene's law.
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "confine/servo.hpp"
@@ -14,45 +11,17 @@
 namespace packmpi::exporters::lammps {
 namespace {
 
-/// The scene's damping ratio; sliding friction is there a damping of slip up to Coulomb's limit, so it needs some.
-double damping_ratio(const Specimen& s) {
-  constexpr double least = 1e-3;
-  const double xi = s.scene.in.contact.damping_ratio;
-  return remembers(s) ? xi : std::max(xi, least);
-}
-
-/// "tangential ...", with what resists rolling and twisting. `share` as in contact().
-std::string friction_words(const Specimen& s, double share, double friction) {
-  const input::Input& in = s.scene.in;
-  // Slip is damped by x normal dampings up to the limit; x makes that damping the same for every xi.
-  if (!remembers(s)) return fmt::format("tangential linear_nohistory {} {}", 1.0 / damping_ratio(s), friction);
-  const double stiffness = 8.0 * share * 2.0 * shear_modulus(s) / (2.0 * (2.0 - in.particles.poisson_ratio));
-  std::string words =
-      fmt::format("tangential mindlin_rescale/force {} {} {}", stiffness, tangential_damping(s), friction);
-  // Springs of rolling and twisting are constants there: that of sliding between the widest particles at this overlap.
-  constexpr double overlap = 5e-4;  // of a radius
-  const double reduced = share * s.widest;
-  const double mass = share * 4.0 / 3.0 * std::numbers::pi * in.particles.density * s.widest * s.widest * s.widest;
-  const double spring = stiffness * std::sqrt(reduced * overlap * s.widest);
-  const double dashpot = 2.0 * in.contact.damping_ratio * std::sqrt(spring * 2.0 / 7.0 * mass);
-  if (in.contact.rolling_friction > 0.0) {
-    words += fmt::format(" rolling sds {} {} {}", spring, dashpot, in.contact.rolling_friction);
-  }
-  if (in.contact.twisting_friction > 0.0) {
-    words += fmt::format(" twisting sds {} {} {}", spring * reduced * reduced, dashpot * reduced * reduced,
-                         in.contact.twisting_friction * reduced);
-  }
-  return words;
-}
-
-/// "hertz ...", for pairs or walls, by its stiffness: of a wall's modulus LAMMPS makes another E* than of a pair's.
-/// `share` of a particle's own E / (1 - nu^2) is E*: 1/2 against its like, 1 against what is rigid.
+/// The law of pairs or walls of the one material: by its stiffness, as of a wall's modulus LAMMPS makes another E* than
+/// of a pair's. `share` of a particle's own E / (1 - nu^2) is E*: 1/2 against its like, 1 against what is rigid.
 std::string contact(const Specimen& s, double share, double friction) {
   const input::Input& in = s.scene.in;
   const double nu = in.particles.poisson_ratio;
-  const double stiffness = 4.0 / 3.0 * share * in.particles.youngs_modulus / (1.0 - nu * nu);
-  return fmt::format("hertz {} {} {} damping tsuji{}", stiffness, tsuji_restitution(damping_ratio(s)),
-                     friction_words(s, share, friction), in.contact.tension_cutoff ? " limit_damping" : "");
+  return lammps_law(s,
+                    {.normal_modulus = share * in.particles.youngs_modulus / (1.0 - nu * nu),
+                     .shear_modulus = share * shear_modulus(s) / (2.0 - nu),
+                     .damping_ratio = in.contact.damping_ratio,
+                     .friction = {friction, friction, in.contact.rolling_friction, in.contact.twisting_friction}},
+                    share);
 }
 
 /// A floor; over it a lid, which moves by the variable `lid` [m].

@@ -39,14 +39,6 @@ double shear_modulus(const Specimen& specimen) {
 
 bool remembers(const Specimen& specimen) { return specimen.scene.in.contact.tangential == input::Tangential::mindlin; }
 
-double tangential_damping(const Specimen& specimen) {
-  const input::Input& in = specimen.scene.in;
-  const double nu = in.particles.poisson_ratio;
-  const double shear = (1.0 - nu) / (2.0 * (2.0 - nu));  // G* / E*
-  const bool rolls = specimen.rotation && in.contact.friction_velocity == input::FrictionVelocity::contact;
-  return std::sqrt(4.0 * shear * (rolls ? 2.0 / 7.0 : 1.0));
-}
-
 std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid, Rolling rolling) {
   const input::Input& in = specimen.scene.in;
   std::vector<std::string> lines;

@@ -21,9 +21,6 @@ namespace packmpi::exporters {
 
 /// Has the scene friction with memory (contact.tangential = "mindlin")?
 [[nodiscard]] bool remembers(const Specimen& specimen);
-/// Tangential over normal damping coefficient, sqrt(4 G* m_t / (E* m*)): the damping ratio is the same for both; like
-/// materials and rigid walls have the same.
-[[nodiscard]] double tangential_damping(const Specimen& specimen);
 
 /// What the receiving code's input keeps of the scene's drag: all, all but a fluid that moves, nothing.
 enum class Fluid { carried, at_rest, not_carried };

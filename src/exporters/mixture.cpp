@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "exporters/lammps_family.hpp"
@@ -16,35 +15,6 @@ using scene::PairMaterial;
 int components(const Specimen& s) { return static_cast<int>(s.scene.in.components.size()); }
 const input::Component& component(const Specimen& s, int k) {
   return s.scene.in.components[static_cast<std::size_t>(k)];
-}
-
-/// "hertz ... tangential ...", of LAMMPS' pair_style granular. `share`: of the radius and mass of the widest particle,
-/// r* and m* of the constant springs of rolling: 1/2, at a wall 1.
-std::string granular(const Specimen& s, const PairMaterial& of, double share) {
-  constexpr double least = 1e-3, overlap = 5e-4;  // damping of sliding; of a radius
-  const bool history = remembers(s);
-  const double xi = history ? of.damping_ratio : std::max(of.damping_ratio, least);
-  std::string words = fmt::format("hertz {} {} damping tsuji ", 4.0 / 3.0 * of.normal_modulus, tsuji_restitution(xi));
-  const double stiffness = 8.0 * of.shear_modulus;
-  const bool rolls = s.rotation && s.scene.in.contact.friction_velocity == input::FrictionVelocity::contact;
-  const double slip_mass = rolls ? 2.0 / 7.0 : 1.0;
-  words += history
-               ? fmt::format("tangential mindlin_rescale/force {} {} {}", stiffness,
-                             std::sqrt(4.0 * of.shear_modulus / of.normal_modulus * slip_mass), of.friction.particles)
-               : fmt::format("tangential linear_nohistory {} {}", 1.0 / xi, of.friction.particles);
-  if (history) {
-    const double reduced = share * s.widest;
-    const double mass =
-        share * 4.0 / 3.0 * std::numbers::pi * scene::densest(s.scene.in) * s.widest * s.widest * s.widest;
-    const double spring = stiffness * std::sqrt(reduced * overlap * s.widest);
-    const double dashpot = 2.0 * of.damping_ratio * std::sqrt(spring * 2.0 / 7.0 * mass);
-    if (s.scene.features.rolling) {  // all pairs alike, or LAMMPS cannot mix them
-      words += fmt::format(" rolling sds {} {} {}", spring, dashpot, of.friction.rolling);
-      words += fmt::format(" twisting sds {} {} {}", spring * reduced * reduced, dashpot * reduced * reduced,
-                           of.friction.twisting * reduced);
-    }
-  }
-  return words + (s.scene.in.contact.tension_cutoff ? " limit_damping" : "");
 }
 
 /// "a b c d ..." of a table of (types x types), the last type being the walls'.
@@ -86,12 +56,42 @@ std::string kinds_words(const Specimen& s, std::string_view word, int first) {
   return words;
 }
 
+std::string lammps_law(const Specimen& s, const PairMaterial& of, double share) {
+  constexpr double least = 1e-3, overlap = 5e-4;
+  const bool history = remembers(s);
+  const double xi = history ? of.damping_ratio : std::max(of.damping_ratio, least);
+  std::string words = fmt::format("hertz {} {} damping tsuji ", 4.0 / 3.0 * of.normal_modulus, tsuji_restitution(xi));
+  const std::string_view limit = s.scene.in.contact.tension_cutoff ? " limit_damping" : "";
+  // Slip is damped by x normal dampings up to the limit; x makes that damping the same for every xi.
+  if (!history)
+    return fmt::format("{}tangential linear_nohistory {} {}{}", words, 1.0 / xi, of.friction.particles, limit);
+  const double stiffness = 8.0 * of.shear_modulus;
+  const bool turns = s.rotation && s.scene.in.contact.friction_velocity == input::FrictionVelocity::contact;
+  const double damping = std::sqrt(4.0 * of.shear_modulus / of.normal_modulus * (turns ? 2.0 / 7.0 : 1.0));
+  words += fmt::format("tangential mindlin_rescale/force {} {} {}", stiffness, damping, of.friction.particles);
+  // Springs of rolling and twisting are constants there: that of sliding between the widest particles at this overlap,
+  // of a radius. Pairs of several materials all have both, or LAMMPS cannot mix them.
+  const double reduced = share * s.widest;
+  const double mass = share * scene::densest(s.scene.in) * geometry::volume(3, s.widest);
+  const double spring = stiffness * std::sqrt(reduced * overlap * s.widest);
+  const double dashpot = 2.0 * of.damping_ratio * std::sqrt(spring * 2.0 / 7.0 * mass);
+  const bool both = s.scene.features.mixture && s.scene.features.rolling;
+  if (both || of.friction.rolling > 0.0) {
+    words += fmt::format(" rolling sds {} {} {}", spring, dashpot, of.friction.rolling);
+  }
+  if (both || of.friction.twisting > 0.0) {
+    words += fmt::format(" twisting sds {} {} {}", spring * reduced * reduced, dashpot * reduced * reduced,
+                         of.friction.twisting * reduced);
+  }
+  return fmt::format("{}{}", words, limit);
+}
+
 std::string lammps_pairs(const Specimen& s) {
   std::string text = fmt::format("# {}\n", kinds_words(s, "type", 1));
   for (int a = 0; a < components(s); ++a) {
     for (int b = a; b < components(s); ++b) {
       text += fmt::format("pair_coeff      {} {} {}\n", a + 1, b + 1,
-                          granular(s, scene::pair_material(s.scene.in, a, b), 0.5));
+                          lammps_law(s, scene::pair_material(s.scene.in, a, b), 0.5));
     }
   }
   return text;
@@ -102,7 +102,7 @@ std::string lammps_walls(const Specimen& s) {
   const double share = s.scene.in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
   for (const Region& region : round_regions(s)) text += region.line;
   for (int k = 0; k < components(s); ++k) {
-    const std::string law = granular(s, scene::wall_material(s.scene.in, k), share);
+    const std::string law = lammps_law(s, scene::wall_material(s.scene.in, k), share);
     text += fmt::format("group           component{0} type {0}\n", k + 1);
     for (const Region& region : round_regions(s)) {
       text += fmt::format("fix             wall_{2}_{0} component{0} wall/gran/region granular {1} region {2}\n", k + 1,

@@ -14,6 +14,10 @@ namespace packmpi::exporters {
 /// "type 1: gravel; type 2: sand", a comment's words.
 [[nodiscard]] std::string kinds_words(const Specimen& specimen, std::string_view word, int first);
 
+/// LAMMPS: "hertz ... tangential ..." of its granular styles. `share`: of the radius and mass of the widest particle,
+/// r* and m* of the constant springs of rolling: 1/2, at a wall 1. Sliding friction without memory is there a damping
+/// of slip up to Coulomb's limit, so it needs some.
+[[nodiscard]] std::string lammps_law(const Specimen& specimen, const scene::PairMaterial& of, double share);
 /// LAMMPS: pair_coeff of each pair, and walls of each type.
 [[nodiscard]] std::string lammps_pairs(const Specimen& specimen);
 [[nodiscard]] std::string lammps_walls(const Specimen& specimen);
