@@ -171,9 +171,9 @@ std::vector<std::string> missed_targets(const scene::Scene& scene, const RunReco
                     record.particles, record.target_particles, record.layers.size(), record.stop_reason));
   } else if (!record.reached) {
     missed.push_back(
-        fmt::format("container.size: the height is {:.4g} m of {:.4g} m after {} layers, the most there "
-                    "are ({})",
-                    record.height, record.target_height, record.layers.size(), record.stop_reason));
+        fmt::format("container.{}: the height is {:.4g} m of {:.4g} m after {} layers, the most there are ({})",
+                    scene.container.is_box() ? "size" : "height", record.height, record.target_height,
+                    record.layers.size(), record.stop_reason));
   }
   add_density(record, missed);
   add_confined(scene, record.confined, missed);
