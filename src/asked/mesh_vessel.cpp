@@ -73,7 +73,7 @@ void take_mesh(const document::Document& document, const std::optional<tables::C
                     shell.triangles.size()));
   }
   c.file.clear();
-  c.unit = "m";
+  c.unit = std::string("m");  // of a char array, GCC 12 warns wrongly
 }
 
 }  // namespace packmpi::input
