@@ -1,19 +1,16 @@
 #include "input/vessel.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace packmpi::input {
 
 void take_vessel(Container& container) {
   if (container.shape == VesselShape::box) return;
-  if (container.shape == VesselShape::mesh) {
-    container.size = {container.mesh->high()[0], container.mesh->high()[1], container.height};
-    container.boundary = {Boundary::wall, Boundary::wall};
-    return;
-  }
-  const bool frustum = container.shape == VesselShape::frustum;
-  const double widest = frustum ? std::max(container.bottom_diameter, container.top_diameter) : container.diameter;
-  container.size = {widest, widest, container.height};
+  std::array<double, 2> across{container.diameter, container.diameter};
+  if (container.shape == VesselShape::frustum) across.fill(std::max(container.bottom_diameter, container.top_diameter));
+  if (container.shape == VesselShape::mesh) across = {container.mesh->high()[0], container.mesh->high()[1]};
+  container.size = {across[0], across[1], container.height};
   container.boundary = {Boundary::wall, Boundary::wall};
 }
 

@@ -2,22 +2,17 @@
 // ranks and after a stop, none of it outside, as dense as in the shape that the triangles make.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
-#include "base/error.hpp"
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "mesh/shapes.hpp"
-#include "pack/pack.hpp"
-#include "run/make_pack.hpp"
+#include "support/packs_on_ranks.hpp"
 
 namespace packmpi::run {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::Soup;
 
 /// A hopper with a beam across it, 160 mm wide.
@@ -41,47 +36,9 @@ std::string text_of(const Soup& soup, double height, const std::string& more = "
          "[contact]\nfriction = 0.3\ndamping_ratio = 0.3\n[checkpoint]\nevery = \"off\"\n";
 }
 
-class PackInMesh : public ::testing::Test {
+class PackInMesh : public test::PacksOnRanks {
  protected:
-  comm::Comm world_{MPI_COMM_WORLD};
-  std::string folder_ =
-      world_.broadcast(0, (fs::temp_directory_path() / ("packmpi_mesh_" + std::to_string(::getpid()))).string());
-  report::RunRecord record_;
-  std::string words_;
-
-  void TearDown() override {
-    world_.barrier();
-    if (world_.rank() == 0) fs::remove_all(folder_);
-    world_.barrier();
-  }
   static scene::Scene scene_of(const std::string& text) { return scene::build(input::parse(text, "shape.toml", {})); }
-  /// On the first `ranks` ranks.
-  ExitCode run(const scene::Scene& scene, int ranks, std::int64_t steps, const char* restart) {
-    Options options;
-    options.folder = folder_;
-    options.verbosity = log::Verbosity::quiet;
-    options.max_steps = steps;
-    options.restart = restart;
-    options.force = options.restart.empty();
-    MPI_Comm part = MPI_COMM_NULL;
-    MPI_Comm_split(MPI_COMM_WORLD, world_.rank() < ranks ? 0 : 1, world_.rank(), &part);
-    ExitCode code = ExitCode::done;
-    if (world_.rank() < ranks) {
-      const comm::Comm comm(part);
-      try {
-        record_ = make_pack(comm, scene, options);
-      } catch (const Error& error) {
-        code = error.code();
-        words_ = error.what();
-      }
-    }
-    MPI_Comm_free(&part);
-    return static_cast<ExitCode>(world_.max(static_cast<std::int64_t>(code)));
-  }
-  [[nodiscard]] pack::PackRows rows() const {
-    world_.barrier();
-    return pack::read_pack(folder_ + "/shape.hdf");
-  }
 };
 
 TEST_F(PackInMesh, IsOneOnAnyNumberOfRanksAndAfterAStop) {

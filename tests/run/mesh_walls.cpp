@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "mesh/shapes.hpp"
 #include "support/placed_bed.hpp"
+#include "support/wall_force.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -14,9 +14,6 @@ using test::Bench;
 using testing::Soup;
 
 constexpr double r = 0.05;
-
-double mass() { return 1000.0 * 4.0 / 3.0 * std::numbers::pi * r * r * r; }
-double hertz(double depth) { return 4.0 / 3.0 * 1e8 / (1.0 - 0.0625) * std::sqrt(r * depth) * depth; }
 
 /// A room of 1 x 1 x 1 with a cube in it from 0.4 to 0.6, of many triangles.
 Soup room_with_cube(int n) {
@@ -34,20 +31,8 @@ input::Input in_mesh(input::Input in, const Soup& soup, double height) {
   return in;
 }
 
-/// Places a sphere `depth` deep in a wall, its middle on the line from a point of it along `away` from it; what one
-/// step gives is the wall's force, by the formula.
 void expect_force(const input::Input& in, const Vec3& on_wall, const Vec3& away, double depth) {
-  const comm::Comm comm(MPI_COMM_WORLD);
-  Bench bench(comm, in);
-  Vec3 x{};
-  for (std::size_t a = 0; a < 3; ++a) x[a] = on_wall[a] + (r - depth) * away[a];
-  bench.place(x, r);
-  bench.start();
-  bench.step();
-  const Bench::State at = bench.state(0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    EXPECT_NEAR(at.v[a], hertz(depth) * bench.dt() / mass() * away[a], 1e-9 * hertz(depth) * bench.dt() / mass()) << a;
-  }
+  test::expect_force(in, r, on_wall, away, depth);
 }
 
 TEST(MeshWalls, PushAsHertzSays) {
@@ -73,7 +58,7 @@ TEST(MeshWalls, SeamsAreNotFelt) {
     in.contact.friction = in.contact.wall_friction = 0.3;
     in.contact.tangential = input::Tangential::mindlin;
     Bench bench(comm, in_mesh(in, testing::box({0, 0, 0}, {1, 1, 1}, n), 1.0));
-    bench.place({0.1, 0.13, r - std::pow(mass() * 20.0 / hertz(1.0), 2.0 / 3.0)}, r, {2.8, 2.4, 0.0});
+    bench.place({0.1, 0.13, r - std::pow(test::mass(r) * 20.0 / test::hertz(r, 1.0), 2.0 / 3.0)}, r, {2.8, 2.4, 0.0});
     bench.start();
     bench.step(static_cast<std::int64_t>(0.25 / bench.dt()));
     ends.push_back(bench.state(0));

@@ -1,25 +1,21 @@
 // Frusta, spheres and annuli: what a particle feels of their walls, and packs in them: one on any number of ranks and
 // after a stop, none of it outside, as dense as it should be.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 
-#include "base/error.hpp"
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "observe/measure.hpp"
-#include "pack/pack.hpp"
-#include "run/make_pack.hpp"
+#include "support/packs_on_ranks.hpp"
 #include "support/placed_bed.hpp"
+#include "support/wall_force.hpp"
 
 namespace packmpi::run {
 namespace {
 
-namespace fs = std::filesystem;
 using input::VesselShape;
 using test::Bench;
 
@@ -36,24 +32,8 @@ input::Input in_vessel(input::Input in, VesselShape shape, double first, double 
   return in;
 }
 
-double mass() { return 1000.0 * 4.0 / 3.0 * std::numbers::pi * r * r * r; }
-double hertz(double depth) { return 4.0 / 3.0 * 1e8 / (1.0 - 0.0625) * std::sqrt(r * depth) * depth; }
-
-/// Places a sphere `depth` deep in a wall, its middle on the line from a point of it along the normal into the vessel;
-/// what one step gives is the wall's force, by the formula.
 void expect_force(const input::Input& in, const Vec3& on_wall, const Vec3& inward, double depth) {
-  const comm::Comm comm(MPI_COMM_WORLD);
-  Bench bench(comm, in);
-  Vec3 x{};
-  for (std::size_t a = 0; a < 3; ++a) x[a] = on_wall[a] + (r - depth) * inward[a];
-  bench.place(x, r);
-  bench.start();
-  bench.step();
-  const Bench::State at = bench.state(0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    EXPECT_NEAR(at.v[a], hertz(depth) * bench.dt() / mass() * inward[a], 1e-9 * hertz(depth) * bench.dt() / mass())
-        << a;
-  }
+  test::expect_force(in, r, on_wall, inward, depth);
 }
 
 // One sphere wants one rank.
@@ -94,7 +74,7 @@ TEST_F(SlopingWalls, LetASphereSlideAndRollDown) {
       in.contact.friction = in.contact.wall_friction = friction;
       if (memory) in.contact.tangential = input::Tangential::mindlin;
       Bench bench(comm, in_vessel(in, VesselShape::frustum, 0.4, 2.4, 1.0));
-      const double z = 0.8, depth = std::pow(mass() * g * slope / hertz(1.0), 2.0 / 3.0);
+      const double z = 0.8, depth = std::pow(test::mass(r) * g * slope / test::hertz(r, 1.0), 2.0 / 3.0);
       const double rho = 0.2 + rise * z - (r - depth) / slope;  // its weight is on the wall from the beginning
       bench.place({1.2 + rho * 0.6, 1.2 + rho * 0.8, z}, r);
       bench.start();
@@ -145,57 +125,22 @@ std::string text_of(const Vessel& vessel) {
          "[contact]\nfriction = 0.3\ndamping_ratio = 0.3\n[checkpoint]\nevery = \"off\"\n";
 }
 
-class PackIn : public ::testing::TestWithParam<Vessel> {
+class PackIn : public test::PacksOnRanks, public ::testing::WithParamInterface<Vessel> {
  protected:
-  comm::Comm world_{MPI_COMM_WORLD};
-  std::string folder_ =
-      world_.broadcast(0, (fs::temp_directory_path() / ("packmpi_shapes_" + std::to_string(::getpid()))).string());
   scene::Scene scene_ = scene::build(input::parse(text_of(GetParam()), "shape.toml", {}));
-  report::RunRecord record_;
 
   void SetUp() override {
     if (world_.size() != 3) GTEST_SKIP() << "on three ranks";
   }
-  void TearDown() override {
-    world_.barrier();
-    if (world_.rank() == 0) fs::remove_all(folder_);
-    world_.barrier();
-  }
-  /// On the first `ranks` ranks.
-  ExitCode run(int ranks, std::int64_t steps, const char* restart) {
-    Options options;
-    options.folder = folder_;
-    options.verbosity = log::Verbosity::quiet;
-    options.max_steps = steps;
-    options.restart = restart;
-    options.force = options.restart.empty();
-    MPI_Comm part = MPI_COMM_NULL;
-    MPI_Comm_split(MPI_COMM_WORLD, world_.rank() < ranks ? 0 : 1, world_.rank(), &part);
-    ExitCode code = ExitCode::done;
-    if (world_.rank() < ranks) {
-      const comm::Comm comm(part);
-      try {
-        record_ = make_pack(comm, scene_, options);
-      } catch (const Error& error) {
-        code = error.code();
-      }
-    }
-    MPI_Comm_free(&part);
-    return static_cast<ExitCode>(world_.max(static_cast<std::int64_t>(code)));
-  }
-  [[nodiscard]] pack::PackRows rows() const {
-    world_.barrier();
-    return pack::read_pack(folder_ + "/shape.hdf");
-  }
 };
 
 TEST_P(PackIn, IsOneOnAnyNumberOfRanksAndAfterAStop) {
-  ASSERT_EQ(run(1, 0, ""), ExitCode::done);
+  ASSERT_EQ(run(scene_, 1, 0, ""), ExitCode::done);
   const pack::PackRows first = rows();
-  EXPECT_EQ(run(3, 700, ""), ExitCode::stopped_early);
-  EXPECT_EQ(run(2, 700, "auto"), ExitCode::stopped_early);
-  EXPECT_EQ(run(3, 700, "auto"), ExitCode::stopped_early);
-  EXPECT_EQ(run(1, 0, "auto"), ExitCode::done);
+  EXPECT_EQ(run(scene_, 3, 700, ""), ExitCode::stopped_early);
+  EXPECT_EQ(run(scene_, 2, 700, "auto"), ExitCode::stopped_early);
+  EXPECT_EQ(run(scene_, 3, 700, "auto"), ExitCode::stopped_early);
+  EXPECT_EQ(run(scene_, 1, 0, "auto"), ExitCode::done);
   const pack::PackRows again = rows();
   EXPECT_EQ(again.position, first.position);
   EXPECT_EQ(again.velocity, first.velocity);
