@@ -34,6 +34,9 @@ struct Line {
 constexpr const char* no_table =
     "is no grading curve; the first line must name the columns, such as \"diameter_mm,percent_passing\", "
     "\"sieve_mm;percent_retained\" or \"sieve_mm;mass_retained_g\" (or _m, _cm, _um)";
+constexpr const char* no_list =
+    "is no list of sizes; the first line must name the columns, such as \"diameter_mm\" or \"radius_mm\" (or _m, _cm, "
+    "_um)";
 
 /// What a column holds. Of several columns the first of these kinds is taken.
 enum class Kind { passing, cumulative, by_sieve, retained, other };
@@ -114,7 +117,8 @@ char separator_of(const std::string& line) {
   return ',';
 }
 
-Head read_head(const std::string& text, const Line& line, std::optional<char> separator) {
+/// `otherwise`: the complaint of a line that names no column of sizes.
+Head read_head(const std::string& text, const Line& line, std::optional<char> separator, const char* otherwise) {
   Head head;
   head.separator = separator.value_or(separator_of(text));
   head.names = cells_of(text, head.separator);
@@ -127,7 +131,7 @@ Head read_head(const std::string& text, const Line& line, std::optional<char> se
       head.radius = any_of(words, {"radius"});
       const auto unit =
           std::ranges::find_if(words, [](const auto& w) { return parse_scalar("1 " + w, length).value.has_value(); });
-      if (unit == words.end()) line.refuse(no_table);
+      if (unit == words.end()) line.refuse(otherwise);
       head.unit = *unit;
     } else if (const Kind kind = kind_of(words); kind < head.kind) {
       head.kind = kind;
@@ -136,7 +140,7 @@ Head read_head(const std::string& text, const Line& line, std::optional<char> se
                   head.names[k].find('%') == std::string::npos;
     }
   }
-  if (!sieves) line.refuse(no_table);
+  if (!sieves) line.refuse(otherwise);
   return head;
 }
 
@@ -285,14 +289,16 @@ Curve curve_of(const Sieves& sieves, Head& head, const Line& line) {
   return curve;
 }
 
+std::string as_written(const Style& style, bool mark) {
+  return fmt::format("{}{}", style.commas ? ", decimal commas" : "", mark ? ", with a byte-order mark" : "");
+}
+
 std::string reading_of(const std::string& path, const Head& head, const Sieves& sieves, const Style& style, bool mark) {
   std::string words =
       fmt::format("{}: read as {}{} over {} in {}", path, head.mass ? "mass, " : "",
                   kind_words.at(static_cast<std::size_t>(head.kind)), head.radius ? "radii" : "diameters", head.unit);
   if (head.names.size() > 2) words += fmt::format(" (columns {} and {})", head.value + 1, head.sieve + 1);
-  words += sieves.order;
-  if (style.commas) words += ", decimal commas";
-  if (mark) words += ", with a byte-order mark";
+  words += sieves.order + as_written(style, mark);
   if (sieves.pan) words += ", with a pan";
   words += fmt::format(": {} sieves", sieves.points.size());
   if (sieves.points.empty()) return words;
@@ -343,7 +349,7 @@ SieveTable read_sieve_table(const CurveFile& file) {
   if (found.lines.empty())
     Line{file.path, 1}.refuse("is empty; the first line must be \"diameter_mm,percent_passing\"");
   const Line first{file.path, found.lines.front().first};
-  Head head = read_head(found.lines.front().second, first, found.separator);
+  Head head = read_head(found.lines.front().second, first, found.separator, no_table);
   if (head.kind == Kind::other) first.refuse(no_table);
   if (found.lines.size() > 10000) first.refuse("more than 10000 points; is it a grading curve?");
   Style style;
@@ -361,7 +367,8 @@ SizeList read_size_list(const CurveFile& file) {
   const Lines found = lines_of(file);
   if (found.lines.empty())
     Line{file.path, 1}.refuse("is empty; the first line must be \"diameter_mm\" or \"radius_mm\"");
-  const Head head = read_head(found.lines.front().second, {file.path, found.lines.front().first}, found.separator);
+  const Line first{file.path, found.lines.front().first};
+  const Head head = read_head(found.lines.front().second, first, found.separator, no_list);
   Style style;
   SizeList list;
   for (const auto& [number, text] : std::span(found.lines).subspan(1)) {
@@ -374,9 +381,9 @@ SizeList read_size_list(const CurveFile& file) {
   }
   if (list.radii.empty()) Line{file.path, 1}.refuse("has no sizes; give one a line");
   const auto [least, most] = std::ranges::minmax(list.radii);
-  list.reading =
-      fmt::format("{}: read as {} in {}: {} sizes, diameters {:g} to {:g} m", file.path,
-                  head.radius ? "radii" : "diameters", head.unit, list.radii.size(), 2.0 * least, 2.0 * most);
+  list.reading = fmt::format("{}: read as {} in {}{}: {} sizes, diameters {:g} to {:g} m", file.path,
+                             head.radius ? "radii" : "diameters", head.unit, as_written(style, found.mark),
+                             list.radii.size(), 2.0 * least, 2.0 * most);
   return list;
 }
 

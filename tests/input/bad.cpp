@@ -1,4 +1,5 @@
-// Wrong scenes: each file of bad/ says in its first line what the reader must say, word for word, on every rank.
+// Wrong scenes, sieve tables and lists of sizes: each file of bad/ says in its first line what the reader must say,
+// word for word, scenes on every rank.
 #include <gtest/gtest.h>
 #include <mpi.h>
 
@@ -21,9 +22,11 @@ namespace fs = std::filesystem;
 
 const fs::path bad_folder = fs::path(PACKMPI_SOURCE_DIR) / "tests/input/bad";
 
-std::vector<std::string> bad_files() {
+std::vector<std::string> bad_files(const std::string& ending = ".toml") {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(bad_folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(bad_folder)) {
+    if (entry.path().extension() == ending) names.push_back(entry.path().filename().string());
+  }
   std::ranges::sort(names);
   return names;
 }
@@ -79,6 +82,18 @@ std::string stem(const ::testing::TestParamInfo<std::string>& file) { return fs:
 
 INSTANTIATE_TEST_SUITE_P(Files, Bad, ::testing::ValuesIn(bad_files()), stem);
 
+class BadTable : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BadTable, ReaderSaysExactlyThis) {
+  const CurveFile file{GetParam(), text_of(bad_folder / GetParam())};
+  const bool sieves = GetParam().starts_with("sieves_");
+  ASSERT_TRUE(sieves || GetParam().starts_with("sizes_"));
+  EXPECT_EQ(complaint([&] { sieves ? (void)tables::read_sieve_table(file) : (void)tables::read_size_list(file); }),
+            promised(file.text, file.path));
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadTable, ::testing::ValuesIn(bad_files(".csv")), stem);
+
 TEST(BadInput, TheGoodSceneOfTheseTestsIsGood) { EXPECT_EQ(complaint_of_set({}), ""); }
 
 TEST(BadInput, EveryComplaintIsOneLine) {
@@ -127,46 +142,16 @@ TEST(BadInput, FolderAndMissingFile) {
             nowhere + ": cannot be opened (No such file or directory); check the path");
 }
 
-TEST(BadInput, SieveTables) {
-  const auto of = [](const std::string& text) {
+TEST(BadInput, TablesThatNoCommentCanStandIn) {
+  const auto sieves = [](const std::string& text) {
     return complaint([&] { (void)tables::read_sieve_table({"g.csv", text}); });
   };
-  const std::string head = "diameter_mm,percent_passing\n", retained = "sieve_mm;percent_retained\n";
-  const std::string no_table =
-      "is no grading curve; the first line must name the columns, such as \"diameter_mm,percent_passing\", "
-      "\"sieve_mm;percent_retained\" or \"sieve_mm;mass_retained_g\" (or _m, _cm, _um)";
-  EXPECT_EQ(of(""), "g.csv:1: is empty; the first line must be \"diameter_mm,percent_passing\"");
-  EXPECT_EQ(of("\xff\xfe"), "g.csv:1: is UTF-16; save it as CSV in UTF-8");
-  EXPECT_EQ(of("# my sand\n1,2\n"), "g.csv:2: " + no_table);
-  EXPECT_EQ(of("diameter_kg,percent_passing\n"), "g.csv:1: " + no_table);
-  EXPECT_EQ(of("diameter,percent_passing\n"), "g.csv:1: " + no_table) << "without a unit";
-  EXPECT_EQ(of("diameter_mm,height_m\n"), "g.csv:1: " + no_table);
-  const std::string as_many = "; give as many, and where decimals have commas, separate columns by semicolons";
-  EXPECT_EQ(of(head + "1;2\n"), "g.csv:2: has 1 cell, the first line has 2" + as_many);
-  EXPECT_EQ(of(head + "1,2,3\n"), "g.csv:2: has 3 cells, the first line has 2" + as_many);
-  EXPECT_EQ(of(head + "1,2\n\n4,x\n"), "g.csv:4: \"x\" is not a number; write 4.75,63.2 (a point), or 4,75;63,2");
-  EXPECT_EQ(of(head + "-1,2\n"), "g.csv:2: a diameter must be above 0");
-  EXPECT_EQ(of(head + "1,200\n"), "g.csv:2: 200 percent; give 0 to 100");
-  EXPECT_EQ(of("diameter_mm;percent_passing\n2.5;0\n4,5;100\n"),
-            "g.csv:3: \"4,5\": the file has decimal points and decimal commas, or thousands; use one kind alone");
-  EXPECT_EQ(of(head + "1,0\n2,50\n1,0\n"), "g.csv:4: the sieve of line 2 is there again");
-  EXPECT_EQ(of(retained + "4;0\n2;40\n1;60\n"),
-            "g.csv:1: percent retained may be each sieve's own or cumulative here; name the column "
-            "percent_retained_by_sieve or cumulative_percent_retained");
-  EXPECT_EQ(
-      of(retained + "4;0\n2;90\n1;60\n"),
-      "g.csv:1: percent retained is neither cumulative, as it does not grow to finer sieves, nor each sieve's own, "
-      "as the sum is 150; check the numbers");
-  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\n2;90\n1;60\n"),
-            "g.csv:1: masses by sieve do not tell what passes the finest; add a line for the pan, such as \"pan,0\"");
-  EXPECT_EQ(of("sieve_mm;cumulative_mass_retained_g\n4;0\n2;90\n"),
-            "g.csv:1: cumulative masses need the whole; add a line for the pan with the mass of all");
-  EXPECT_EQ(of("sieve_mm;cumulative_mass_retained_g\n4;0\n2;90\npan;80\n"),
-            "g.csv:3: is more than all; check the numbers");
-  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\n2;-1\n"), "g.csv:3: -1 is below 0; give masses");
-  EXPECT_EQ(of("sieve_mm;mass_retained_g\n4;0\npan;0\n"), "g.csv:1: all is 0; check the numbers");
-  EXPECT_EQ(of("sieve_mm;percent_retained_each\n4;0\n2;50\npan;10\n"),
-            "g.csv:1: the shares add up to 60 percent; give 100");
+  EXPECT_EQ(sieves(""), "g.csv:1: is empty; the first line must be \"diameter_mm,percent_passing\"");
+  EXPECT_EQ(sieves("\xff\xfe"), "g.csv:1: is UTF-16; save it as CSV in UTF-8");
+  EXPECT_EQ(complaint([&] {
+              (void)tables::read_size_list({"g.csv", ""});
+            }),
+            "g.csv:1: is empty; the first line must be \"diameter_mm\" or \"radius_mm\"");
 }
 
 TEST(BadInput, FinesOfWhichNothingIsKnown) {

@@ -605,8 +605,8 @@ TEST(GoodInput, AListOfSizesIsANumberOfParticles) {
   const Input in = parse(least, "a.toml", {{table}}, file);
   EXPECT_EQ(in.particles.radius.radii, (std::vector<double>{0.01025, 0.02, 0.01025}));
   EXPECT_EQ(in.particles.count, 3);
-  EXPECT_EQ(in.remarks,
-            std::vector<std::string>{"grains.csv: read as diameters in mm: 3 sizes, diameters 0.0205 to 0.04 m"});
+  EXPECT_EQ(in.remarks, std::vector<std::string>{"grains.csv: read as diameters in mm, decimal commas, with a "
+                                                 "byte-order mark: 3 sizes, diameters 0.0205 to 0.04 m"});
   const Input again = parse(in.effective, "b.toml", {});
   EXPECT_EQ(again.effective, in.effective) << "it needs no file";
   EXPECT_EQ(again.particles.radius.order, ListOrder::file);
