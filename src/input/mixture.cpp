@@ -251,7 +251,10 @@ void check_mixture(const MixtureTables& tables, const Document& document, const 
   const auto refuse = [&](std::string_view path, std::string_view words) { fail(document.place(path), path, words); };
   if (in.particles.count > 0)
     refuse("particles.count", "several components are counted by their shares, not by one number; remove it");
-  if (in.start) refuse("start", "does not go on from packs with several components yet; remove it");
+  if (in.start && !in.strata.empty())
+    fail(tables.strata.front().place, "stratum",
+         "strata are laid from the floor; with [start], give the components the shares of what comes on top, or remove "
+         "one of them");
   if (in.target)
     refuse("target", "is of one material: friction is found for it, not for pairs of components; remove it");
   if (in.confinement) refuse("confinement", "is of one material yet; remove it");

@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "input/read.hpp"
 #include "observe/deepest.hpp"
@@ -13,6 +14,7 @@
 #include "pack/pack.hpp"
 #include "report/json_seal.hpp"
 #include "source/fit.hpp"
+#include "source/mixture.hpp"
 #include "source/taken.hpp"
 
 namespace packmpi::run {
@@ -75,6 +77,15 @@ std::string worst_of(const Bed& bed, const source::TextRows& read) {
   return words + (wall ? ", in a wall" : "");
 }
 
+// A number that has been passed already cannot be met.
+void check_number(const Bed& bed) {
+  const scene::Scene& scene = bed.scene;
+  const std::int64_t count = scene.in.particles.count, there = bed.progress.count;
+  if (count == 0 || there <= count) return;
+  throw Error(ExitCode::bad_input, fmt::format("{}: particles.count: is {}, and {} has {}; raise it, or remove it",
+                                               scene.in.file, count, scene.in.start->pack, there));
+}
+
 // The worst overlap. Throws if it is beyond what may be relaxed.
 double check_overlaps(const Bed& bed, const source::TextRows& read) {
   const scene::Scene& scene = bed.scene;
@@ -102,6 +113,7 @@ double take_text(Bed& bed, const std::string& path, source::Kind kind) {
   const scene::Scene& scene = bed.scene;
   source::TextRows read;
   comm::agree_on(bed.comm, [&] {
+    source::check_one_material(scene);
     const int dimension = scene.container.dimension;
     read = kind == source::Kind::csv ? source::read_csv(path, dimension, bed.comm.rank(), bed.comm.size())
                                      : source::read_lammps(path, dimension, bed.comm.rank(), bed.comm.size());
@@ -131,6 +143,11 @@ double take_pack(Bed& bed, const std::string& path) {
   });
   add_particles(slice.rows, bed.store);
   const std::vector<GlobalId> first_ids = source::first_ids_of(bed.comm, slice.rows);
+  if (scene.features.mixture) {
+    bed.progress.mixing = source::mixing_of(bed.comm, scene, slice.rows, first_ids);
+    bed.progress.first_ids = first_ids;
+    bed.mark_components();
+  }
   slice = {};
   const bool springs = take_springs(path, made, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
@@ -147,6 +164,7 @@ void take_over(Bed& bed) {
   source::Kind kind{};
   comm::agree_on(bed.comm, [&] { kind = source::kind_of(path); });
   const double worst = kind == source::Kind::pack ? take_pack(bed, path) : take_text(bed, path, kind);
+  check_number(bed);
   log::info(fmt::format("start: {}; deepest overlap {:.2e} radii, height {:.4g} m",
                         source::taken_words(bed.scene, bed.progress), worst, bed.progress.height));
 }

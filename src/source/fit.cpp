@@ -11,6 +11,7 @@
 #include "input/read.hpp"
 #include "pack/scene_change.hpp"
 #include "report/json_seal.hpp"
+#include "source/mixture.hpp"
 
 namespace packmpi::source {
 namespace {
@@ -65,6 +66,7 @@ input::Input with_start(const comm::Comm& comm, input::Input in) {
 void check_fit(const scene::Scene& scene, const input::Input& made, const pack::PackSlice& slice) {
   const std::string moved = pack::container_change(made.container, scene.in.container);
   if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
+  check_components(scene, made);
   check_sides(scene, slice.confined);
   for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
 }
@@ -92,9 +94,9 @@ void fit_rows(const scene::Scene& scene, TextRows& found) {
 
 bool feels_anew(const input::Input& made, const scene::Scene& scene) {
   const std::string changes = pack::forbidden_changes(made.effective, scene.in.effective, pack::RunIs::finished);
-  constexpr std::array tables{"contact.",          "jamming.",          "drag.",
-                              "near_field.",       "particles.density", "particles.youngs",
-                              "particles.poisson", "dynamics.rotation"};
+  constexpr std::array tables{
+      "contact.",          "jamming.",          "drag.",      "near_field.", "particles.density", "particles.youngs",
+      "particles.poisson", "dynamics.rotation", "component[", "pair["};
   return std::ranges::any_of(tables, [&](const char* table) {
     return changes.starts_with(table) || changes.find(fmt::format("; {}", table)) != std::string::npos;
   });

@@ -21,8 +21,8 @@ namespace packmpi::source {
 /// Error(io_failure) if there is no such pack.
 [[nodiscard]] input::Input with_start(const comm::Comm& comm, input::Input in);
 
-/// Throws Error(bad_input) if the pack, which the scene `made` made, has another container than the scene or radii that
-/// the scene has not. Local.
+/// Throws Error(bad_input) if the pack, which the scene `made` made, has another container or other components than the
+/// scene, or radii that the scene has not. Local.
 void check_fit(const scene::Scene& scene, const input::Input& made, const pack::PackSlice& slice);
 
 /// Of particles of a text file: puts them into the periodic range along periodic axes, wherever the file has them. The

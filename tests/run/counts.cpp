@@ -94,14 +94,24 @@ double least_gap(const pack::PackRows& rows, double length) {
   return least;
 }
 
+// Boxes, discs, cylinders, walls; equal, graded and listed sizes; layers and insertion alone.
 TEST_F(Counts, AreExactInTwentyScenes) {
-  for (const std::int64_t count : {1, 2, 10, 57, 200}) {
-    for (const auto& [text, sizes] :
-         {std::pair(box + layered, equal), std::pair(box + layered, gaussian),
-          std::pair(box + layered, list_of(count, "random")), std::pair(box + alone, gaussian)}) {
-      const report::RunRecord record = made(text, {sizes, fmt::format("particles.count={}", count)});
-      EXPECT_EQ(record.particles, count) << sizes;
-      EXPECT_EQ(record.audit.found, count) << sizes;
+  for (const std::int64_t count : {1, 10, 57, 150}) {
+    const std::string number = fmt::format("particles.count={}", count);
+    const std::vector<std::pair<std::string, std::vector<std::string>>> scenes{
+        {box + layered, {equal, number}},
+        {box + layered, {list_of(count, "random"), number, "container.boundary=[\"wall\", \"wall\"]"}},
+        {"[container]\nshape = \"cylinder\"\ndiameter = 0.3\nheight = 0.4\n" + box.substr(box.find("[particles]")) +
+             layered,
+         {gaussian, number}},
+        {"[container]\ndimension = 2\nsize = [0.5, 0.8]\nboundary = [\"wall\"]\n" +
+             box.substr(box.find("[particles]")) + layered,
+         {gaussian, number}},
+        {box + alone, {gaussian, number}}};
+    for (const auto& [text, set] : scenes) {
+      const report::RunRecord record = made(text, set);
+      EXPECT_EQ(record.particles, count) << text;
+      EXPECT_EQ(record.audit.found, count) << text;
       EXPECT_TRUE(record.reached);
       EXPECT_EQ(record.stop_reason, "count");
       EXPECT_EQ(record.target_particles, count);
@@ -133,6 +143,22 @@ TEST_F(Counts, EachSizeOfAListIsUsedOnce) {
   EXPECT_EQ(shuffled, sorted);
   (void)made(box + layered, {list_of(130, "random"), "seed=2"});
   EXPECT_NE(rows().radius, shuffled);
+}
+
+// 1085 given diameters in the order of their file, layer by layer, none left out and none twice.
+TEST_F(Counts, AFileOf1085DiametersIsUsedUp) {
+  const std::vector<double> list = radii(1085);
+  std::string text = "diameter_mm\n";
+  for (const double r : list) text += fmt::format("{}\n", 2e3 * r);
+  const scene::Scene what = scene::build(
+      input::parse(box + layered, "box.toml",
+                   {{R"(particles.diameter={ distribution = "list", list_file = "d.csv", order = "file" })"}},
+                   input::CurveFile{"d.csv", text}));
+  const report::RunRecord record = make_pack(comm_, what, options("together"));
+  EXPECT_EQ(record.particles, 1085);
+  const std::vector<double> got = rows().radius;
+  ASSERT_EQ(got.size(), list.size());
+  for (std::size_t k = 0; k < list.size(); ++k) ASSERT_NEAR(got[k], list[k], 1e-15) << k;
 }
 
 TEST_F(Counts, AStoppedRunGoesOnToTheSameNumber) {

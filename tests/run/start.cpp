@@ -1,6 +1,7 @@
 // Going on from a pack: to the bit where nothing is asked, more layers, another friction, and what does not fit.
 #include "run/start.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "exporters/convert.hpp"
+#include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "pack/pack.hpp"
 #include "report/json_seal.hpp"
@@ -173,6 +176,87 @@ TEST_F(Start, AStoppedRunNeedsNoSecondStart) {
   });
   EXPECT_THAT(record.start, HasSubstr("taken over"));
   expect_equal(rows("next"), target);
+}
+
+// A lid, a number of particles: asked for in the scene that goes on, and met.
+TEST_F(Start, ALidPressesWhatWasTakenOver) {
+  const report::RunRecord record = go_on({"confinement.vertical=500"});
+  EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
+  EXPECT_GT(record.steps, 0);
+  EXPECT_EQ(rows("next").radius, rows("base").radius) << "no layer was added";
+}
+
+TEST_F(Start, ANumberCountsWhatWasTakenOver) {
+  const std::int64_t there = std::ssize(rows("base").id);
+  const report::RunRecord record = go_on({fmt::format("particles.count={}", there + 25)});
+  EXPECT_TRUE(record.reached);
+  EXPECT_EQ(record.particles, there + 25);
+  EXPECT_EQ(go_on({fmt::format("particles.count={}", there)}).steps, 0);
+  EXPECT_THAT(complaint({fmt::format("particles.count={}", there - 1)}),
+              HasSubstr(fmt::format(": particles.count: is {}, and base.hdf has {}; raise it, or remove it", there - 1,
+                                    there)));
+}
+
+// Of a pack that was periodic a box is cut out with `convert --cut`, and more layers come on top of it between walls.
+TEST_F(Start, GoesOnFromACut) {
+  const std::string cut = (folder_ / "part.csv").string();
+  const exporters::Converted part = exporters::convert_pack(comm_, {.pack = (folder_ / "base.hdf").string(),
+                                                                    .format = "csv",
+                                                                    .file = cut,
+                                                                    .cut = "box:length=0.2,width=0.24",
+                                                                    .force = true});
+  ASSERT_GT(part.particles, 10);
+  const report::RunRecord record =
+      make("next", "[start]\npack = \"part.csv\"\n",
+           {"container.size=[0.2, 0.24, 0.12]", "container.boundary=[\"wall\", \"wall\"]"});
+  EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
+  EXPECT_EQ(record.layers.front().total, part.particles);
+  EXPECT_GT(record.particles, part.particles);
+  EXPECT_GE(record.height, 0.12);
+}
+
+// Two components: each particle keeps its own, what comes on top has the shares of the scene that goes on.
+TEST_F(Start, GoesOnWithComponents) {
+  const auto with = [](double heavy, double light, const char* second) {
+    return fmt::format(
+        "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"heavy\"\nshare = {}\ndensity = 2000\n[[component]]\n"
+        "name = \"{}\"\nshare = {}\nradius = {{ distribution = \"uniform\", weighting = \"mass\", min = 0.015, max = "
+        "0.018 }}\n",
+        heavy, second, light);
+  };
+  const std::string pack = "[start]\npack = \"both.hdf\"\n";
+  const report::RunRecord first = make("both", with(0.5, 0.5, "light"), {"output.contacts=true"});
+  const pack::PackRows before = rows("both");
+  EXPECT_EQ(make("next", with(0.5, 0.5, "light") + pack, {"output.contacts=true"}).steps, 0);
+  expect_equal(rows("next"), before);
+  EXPECT_EQ(rows("next").component, before.component);
+  const report::RunRecord record = make("next", with(0.2, 0.8, "light") + pack, {"container.size=[0.3, 0.3, 0.14]"});
+  EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
+  const pack::PackRows after = rows("next");
+  ASSERT_GT(after.id.size(), before.id.size());
+  EXPECT_TRUE(std::equal(before.component.begin(), before.component.end(), after.component.begin()));
+  double heavy = 0.0, all = 0.0, largest = 0.0;
+  for (std::size_t k = before.id.size(); k < after.id.size(); ++k) {
+    const bool is_heavy = after.component[k] == 0;
+    const double mass = (is_heavy ? 2000.0 : 1000.0) * geometry::volume(3, after.radius[k]);
+    all += mass;
+    if (is_heavy) heavy += mass, largest = std::max(largest, mass);
+  }
+  EXPECT_NEAR(heavy, 0.2 * all, largest) << "of the new layers";
+  EXPECT_GT(record.layers.size(), first.layers.size());
+  const auto complaint_of = [&](const std::string& text) {
+    try {
+      (void)make("next", text, {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(complaint_of(with(0.5, 0.5, "other") + pack),
+              HasSubstr("start.pack: is of the components heavy, light, the scene of the components heavy, other; give "
+                        "those of the pack"));
+  EXPECT_THAT(complaint_of(pack),
+              HasSubstr("start.pack: is of the components heavy, light, the scene of one material"));
 }
 
 TEST_F(Start, UnderOtherForcesItComesToRestAgain) {

@@ -46,8 +46,8 @@ class StartText : public ::testing::Test {
     comm.barrier();
     return record;
   }
-  report::RunRecord go_on(const std::string& file, std::vector<std::string> set) {
-    return make(comm_, "next", "[start]\npack = \"" + file + "\"\n", std::move(set));
+  report::RunRecord go_on(const std::string& file, std::vector<std::string> set, const std::string& more = "") {
+    return make(comm_, "next", more + "[start]\npack = \"" + file + "\"\n", std::move(set));
   }
   void write(const std::string& file, const std::string& text) const {
     if (comm_.rank() == 0) std::ofstream(folder_ / file, std::ios::binary) << text;
@@ -56,10 +56,10 @@ class StartText : public ::testing::Test {
   [[nodiscard]] pack::PackRows rows(const std::string& name) const {
     return pack::read_pack((folder_ / (name + ".hdf")).string());
   }
-  std::string complaint(const std::string& text, std::vector<std::string> set = {}) {
+  std::string complaint(const std::string& text, std::vector<std::string> set = {}, const std::string& more = "") {
     write("bad.csv", text);
     try {
-      (void)go_on("bad.csv", std::move(set));
+      (void)go_on("bad.csv", std::move(set), more);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ExitCode::bad_input);
       return error.what();
@@ -68,6 +68,8 @@ class StartText : public ::testing::Test {
   }
 };
 
+const std::string two_components =
+    "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = 1\n";
 const std::vector<std::string> nothing_moves{"dynamics.relaxation=0", "rest.wait=0"};
 
 std::string csv_of(const pack::PackRows& all) {
@@ -184,6 +186,10 @@ TEST_F(StartText, WhatDoesNotFitIsRefused) {
       complaint("0.1,0.1,0.1,0.02\n", {"start.digest=0123456789abcdef"}).find("start.digest: is 0123456789abcdef") !=
           std::string::npos,
       true);
+  EXPECT_EQ(complaint("x,y,z,r\n0.1,0.1,0.1,0.02\n", {}, two_components),
+            next +
+                "particles of a text file are of one material, and the scene has several components; go on from a pack "
+                "(.hdf)");
   write("box.data",
         "title\n\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms # sphere\n\n1 1 0.04 1 0.1 0.1 0.1\n");
   try {

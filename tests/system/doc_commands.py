@@ -47,6 +47,8 @@ COMMANDS = {
     "packmpi convert concrete.hdf --to csv": "",
     "mpirun -n 2 build/packmpi input/quickstart.toml -o ground": SMALL,
     'mpirun -n 2 build/packmpi input/quickstart.toml -o higher --set "start.pack=$PWD/ground/quickstart.hdf" --set "container.size=[0.6, 0.6, 0.6]"': SMALL,
+    "build/packmpi convert ground/quickstart.hdf --to csv --cut box:length=0.3,width=0.3,height=0.3 -o part.csv": "",
+    'mpirun -n 2 build/packmpi input/quickstart.toml -o part --set "start.pack=$PWD/part.csv" --set "container.size=[0.3, 0.3, 0.5]"': SMALL,
     "scripts/study/reproduce.py": "--seeds 1 --examples 5.1 --jobs 1 --set layers.duration=0.01 --doc doc_made || test $? = 3",   # a target was missed
     "packmpi estimate input/quickstart.toml": "--no-probe",
     "packmpi estimate input/quickstart.toml --particles 100000 --ranks 8": "--no-probe",
@@ -83,7 +85,7 @@ COMMANDS = {
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
 NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
-          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
+          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "part/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "ro-crate-metadata.json", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
