@@ -215,6 +215,14 @@ TEST_F(Start, GoesOnFromACut) {
   EXPECT_GE(record.height, 0.12);
 }
 
+std::vector<double> radii_of(const pack::PackRows& rows, std::int32_t component) {
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < rows.id.size(); ++k) {
+    if (rows.component[k] == component) radii.push_back(rows.radius[k]);
+  }
+  return radii;
+}
+
 // Two components: each particle keeps its own, what comes on top has the shares of the scene that goes on.
 TEST_F(Start, GoesOnWithComponents) {
   const auto with = [](double heavy, double light, const char* second) {
@@ -230,7 +238,15 @@ TEST_F(Start, GoesOnWithComponents) {
   EXPECT_EQ(make("next", with(0.5, 0.5, "light") + pack, {"output.contacts=true"}).steps, 0);
   expect_equal(rows("next"), before);
   EXPECT_EQ(rows("next").component, before.component);
-  const report::RunRecord record = make("next", with(0.2, 0.8, "light") + pack, {"container.size=[0.3, 0.3, 0.14]"});
+  // Of each component the same particles, one after the other, as made at once.
+  const std::vector<std::string> higher{"container.size=[0.3, 0.3, 0.14]"};
+  (void)make("next", with(0.5, 0.5, "light") + pack, higher);
+  (void)make("once", with(0.5, 0.5, "light"), higher);
+  const std::vector<double> further = radii_of(rows("next"), 1), once = radii_of(rows("once"), 1);
+  ASSERT_GT(further.size(), radii_of(before, 1).size());
+  EXPECT_TRUE(
+      std::equal(further.begin(), further.begin() + std::min(std::ssize(further), std::ssize(once)), once.begin()));
+  const report::RunRecord record = make("next", with(0.2, 0.8, "light") + pack, higher);
   EXPECT_TRUE(record.targets_met) << ::testing::PrintToString(record.missed);
   const pack::PackRows after = rows("next");
   ASSERT_GT(after.id.size(), before.id.size());
