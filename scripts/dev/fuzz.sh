@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The readers of scenes, and of checkpoints and packs, given what nobody would write: both fuzzers of tests/fuzz side by
-# side, a core each. What is new in their corpora stays in BUILD/corpus for the next time.
+# The readers of scenes, of checkpoints and packs, and of other programs' particles, given what nobody would write: the
+# fuzzers of tests/fuzz side by side, a core each. What is new in their corpora stays in BUILD/corpus for the next time.
 # usage: [BUILD=folder] scripts/dev/fuzz.sh [seconds]     (60; folder build-fuzz)
 # Exit code 1 if anything was found: the bytes are in BUILD/findings, what happened in BUILD/NAME.log, and
 # BUILD/fuzz_NAME FILE does it again.
@@ -14,7 +14,7 @@ source "$root/scripts/mpi_env.sh"
 [[ -f $build/build.ninja ]] || cmake -S "$root" -B "$build" --preset fuzz --log-level=WARNING >/dev/null
 BUILD=$build "$root/scripts/build.sh" packmpi_fuzzers
 
-# The checkpoint fuzzer writes a file for every trial: to memory, if there is a place.
+# A file is written for every trial, but of scenes: to memory, if there is a place.
 memory=/tmp
 [[ -w /dev/shm ]] && memory=/dev/shm
 work=$(mktemp -d "$memory/packmpi-fuzz-XXXXXX")
@@ -39,7 +39,10 @@ input=$!
 # Leaks of MPI, which lives as long as the fuzzer, are no findings; the unit tests look for ours.
 ASAN_OPTIONS=detect_leaks=0 fuzz checkpoint -max_len=256 -len_control=0 -detect_leaks=0 &
 checkpoint=$!
+fuzz rows -max_len=2048 &
+rows=$!
 failed=0
 wait "$input" || failed=1
+wait "$rows" || failed=1
 wait "$checkpoint" || failed=1
 exit "$failed"

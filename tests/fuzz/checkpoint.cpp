@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/digest.hpp"
@@ -33,12 +34,13 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-particles::Store some_particles(int dimension, bool rotation) {
-  particles::Store store(particles::layout_of(dimension, rotation));
+particles::Store some_particles(int dimension, bool rotation, bool mixture) {
+  particles::Store store(particles::layout_of(dimension, rotation, mixture));
   for (std::size_t k = 0; k < particle_count; ++k) {
     const double x = 0.1 * static_cast<double>(k + 1);
     store.add(static_cast<GlobalId>(k), {x, x * x, dimension == 3 ? 1.0 - x : 0.0}, 0.01 + 0.001 * x, {-x, x, 0.0},
               {0.0, 0.0, 3.0 * x});
+    if (mixture) store.set_substance(static_cast<LocalIndex>(k), {k % 5 < 3 ? 0.0 : 1.0, x});
   }
   return store;
 }
@@ -94,6 +96,7 @@ std::string bytes_of(const pack::PackRows& rows) {
   append(bytes, rows.radius);
   append(bytes, rows.layer);
   append(bytes, rows.contacts);
+  append(bytes, rows.component);
   return bytes;
 }
 
@@ -102,6 +105,7 @@ struct Sample {
   bool pack = false;
   int dimension = 3;
   bool rotation = true;
+  bool mixture = false;  ///< of two components
   std::string bytes;     ///< of the file
   std::string contents;  ///< as read_contents() gives them
   disk::Seal seal;
@@ -139,7 +143,7 @@ std::string read_contents(const comm::Comm& alone, const Sample& sample, const s
     return bytes_of(pack::read_pack(path)) + bytes_of(first.rows) + first.scene;
   }
   const pack::RunState alike = pack::read_state(path);
-  particles::Store store(particles::layout_of(sample.dimension, sample.rotation));
+  particles::Store store(particles::layout_of(sample.dimension, sample.rotation, sample.mixture));
   pack::Histories contacts;
   const pack::RunState state = pack::read_checkpoint(alone, path, store, &contacts);
   demand(pack::to_text(state) == pack::to_text(alike), "two readers find two states");
@@ -147,7 +151,7 @@ std::string read_contents(const comm::Comm& alone, const Sample& sample, const s
 }
 
 void write_sample(const comm::Comm& alone, const Sample& sample, const std::string& path) {
-  const particles::Store store = some_particles(sample.dimension, sample.rotation);
+  const particles::Store store = some_particles(sample.dimension, sample.rotation, sample.mixture);
   const std::string scene = "seed = 7\n[container]\nsize = [1.0, 1.0]\n";
   if (sample.pack) {
     const std::vector<std::int32_t> numbers(particle_count, 1);
@@ -169,6 +173,18 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   state.progress.count = particle_count;
   state.progress.steps = 12;
   state.progress.layers = {some_layer()};
+  if (sample.mixture) {
+    state.progress.mixing = {.on = true,
+                             .counts = {3, 2, 3, 1},
+                             .drawn = {6, 3},
+                             .units = {6000, 2000},
+                             .wanted = {6100, 1900},
+                             .extent = 0.01,
+                             .stratum = 1,
+                             .stratum_extent = 0.004,
+                             .stratum_layers = 1,
+                             .strata = {0, 1}};
+  }
   state.progress.now.phase = pack::Phase::settling;
   state.progress.now.row = some_layer();
   const std::array<const particles::Store*, 1> stores{&store};
@@ -178,22 +194,23 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
 class World {
  public:
   World() {
-    for (const bool pack : {false, true}) {
-      for (const bool rotation : {true, false}) {
-        Sample sample{.pack = pack,
-                      .dimension = rotation ? 3 : 2,
-                      .rotation = rotation,
-                      .bytes = {},
-                      .contents = {},
-                      .seal = {},
-                      .state = {}};
-        write_sample(alone_, sample, path_);
-        sample.bytes = bytes_of(path_);
-        sample.contents = read_contents(alone_, sample, path_);
-        sample.seal = disk::check_frame(path_);
-        if (!pack) sample.state = pack::read_state(path_);
-        samples_.push_back(sample);
-      }
+    for (const auto& [pack, rotation, mixture] :
+         {std::tuple(false, true, false), std::tuple(false, false, false), std::tuple(true, true, false),
+          std::tuple(true, false, false), std::tuple(false, true, true), std::tuple(true, true, true)}) {
+      Sample sample{.pack = pack,
+                    .dimension = rotation ? 3 : 2,
+                    .rotation = rotation,
+                    .mixture = mixture,
+                    .bytes = {},
+                    .contents = {},
+                    .seal = {},
+                    .state = {}};
+      write_sample(alone_, sample, path_);
+      sample.bytes = bytes_of(path_);
+      sample.contents = read_contents(alone_, sample, path_);
+      sample.seal = disk::check_frame(path_);
+      if (!pack) sample.state = pack::read_state(path_);
+      samples_.push_back(sample);
     }
   }
   [[nodiscard]] const Sample& sample(std::size_t k) const { return samples_[k % samples_.size()]; }
@@ -338,7 +355,7 @@ void try_bytes(Source source) {
     world->read(sample, forgery.bytes(), forgery.contents());
     return;
   }
-  Damage damage(source, world->sample(which / 4));
+  Damage damage(source, world->sample(which / 6));
   std::string bytes = sample.bytes;
   while (!source.empty()) damage.apply(bytes);
   world->read(sample, bytes, sample.contents);

@@ -88,12 +88,48 @@ bool is_rewritten(const std::string& key) {
          key == "particles.radius.diameter_curve" || key == "particles.count";
 }
 
+const document::Node* entry_of(const document::Table& table, const std::string& name) {
+  const auto found = std::ranges::find(table, name, &document::Entry::name);
+  return found == table.end() ? nullptr : &found->node;
+}
+
+/// Every value of a component, a pair or a stratum is in the table that stands for it.
+void check_tables(const document::Table& asked, const document::Table& got, const std::string& path) {
+  for (const document::Entry& entry : asked) {
+    const std::string here = path + "." + entry.name;
+    const std::string key = "particles" + here.substr(here.find('.'));
+    if (entry.name == "diameter" || entry.name == "restitution" || is_rewritten(key)) continue;  // under other names
+    const document::Node* node = entry_of(got, entry.name);
+    demand(node != nullptr, "is passed over: " + here);
+    if (const auto* inner = std::get_if<document::Table>(&entry.node.value)) {
+      check_tables(*inner, std::get<document::Table>(node->value), here);
+    } else {
+      demand(same(entry.node, *node), "is not what was asked for: " + here);
+    }
+  }
+}
+
+/// The tables of a mixture, in their order. Of several components [particles] is what those have that say nothing else.
+bool is_of_mixture(const document::Table& root, const document::Document& effective, const document::Entry& entry) {
+  const document::Node* components = effective.find("component");
+  if (components == nullptr) return entry_of(root, "component") != nullptr && entry.name != "container";
+  if (entry.name == "particles") return true;
+  if (entry.name != "component" && entry.name != "pair" && entry.name != "stratum") return false;
+  const document::Node* got = effective.find(entry.name);
+  const auto& asked = std::get<document::List>(entry.node.value);
+  demand(got != nullptr && std::get<document::List>(got->value).size() == asked.size(), "other tables: " + entry.name);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    check_tables(std::get<document::Table>(asked[k].value),
+                 std::get<document::Table>(std::get<document::List>(got->value)[k].value), entry.name);
+  }
+  return true;
+}
+
 /// Every value of the document is a key's, and the effective input has it.
 void check_nothing_is_passed_over(const document::Table& table, const std::string& path,
                                   const document::Document& effective) {
-  // Of several components [particles] is what those have that say nothing else: tests/input has their effective input.
-  if (path.empty() && std::ranges::any_of(table, [](const auto& entry) { return entry.name == "component"; })) return;
   for (const document::Entry& entry : table) {
+    if (path.empty() && is_of_mixture(table, effective, entry)) continue;
     const std::string here = (path.empty() ? "" : path + ".") + entry.name;
     if (here == "particles.diameter") continue;  // stands under radius, halved
     if (input::find_key(here) == nullptr) {
