@@ -16,6 +16,7 @@ std::string convert(const comm::Comm& comm, const Request& asked) {
     text += fmt::format("cut out: {}; solid fraction {:.9f}, porosity {:.9f}, spheres cut by its sides\n", done.cut,
                         done.cut_fraction, 1.0 - done.cut_fraction);
   }
+  if (!done.springs.empty()) text += fmt::format("springs of friction: {}\n", done.springs);
   return text;
 }
 

@@ -11,11 +11,11 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "disk/files.hpp"
-#include "exporters/cut.hpp"
 #include "exporters/formats.hpp"
 #include "exporters/quote.hpp"
 #include "exporters/rows_file.hpp"
 #include "exporters/specimen.hpp"
+#include "handover/cut.hpp"
 #include "input/read.hpp"
 #include "mesh/file.hpp"
 #include "pack/pack_file.hpp"
@@ -42,11 +42,11 @@ const Format& format_of(const std::string& name) {
 struct Names {
   ConvertRequest request;
   std::string companion;
-  std::string surface = "";  // of a mesh, for formats that have it in a file
+  std::string third = "";  // of a mesh or of springs, for formats that have them in a file
 
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> all{request.file};
-    for (const std::string& one : {companion, surface}) {
+    for (const std::string& one : {companion, third}) {
       if (!one.empty()) all.push_back(one);
     }
     return all;
@@ -164,6 +164,13 @@ void reading(const comm::Comm& comm, const std::string& path, Action&& action) {
   });
 }
 
+/// The ending of a third file; "" if there is none.
+std::string third_ending(const ConvertRequest& request, const scene::Scene& scene, const Format& format, bool springs) {
+  const bool facets = scene.container.is_mesh() && request.cut.empty();
+  if (facets && format.words.name == std::string_view("liggghts")) return ".stl";
+  return springs && format.springs == SpringsBy::forces ? ".springs" : "";
+}
+
 /// Temporary files first, then their names.
 void write_files(const comm::Comm& comm, const Names& names, const Document& document, const Selection& selection) {
   const std::string& path = names.request.file;
@@ -173,7 +180,7 @@ void write_files(const comm::Comm& comm, const Names& names, const Document& doc
     comm::agree_on(comm, [&] {
       if (comm.rank() != 0) return;
       if (!names.companion.empty()) disk::write_whole(names.companion, document.companion);
-      if (!names.surface.empty()) disk::write_whole(names.surface, document.surface);
+      if (!names.third.empty()) disk::write_whole(names.third, document.third);
       disk::commit(temporary, path);
     });
   } catch (const comm::AgreedError&) {  // every rank is here
@@ -204,20 +211,24 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   check_copies(request, scene.container);
   check_components(request, scene);
   check_cut(request);
-  const std::string file_of_cut = Cut::file_of(request.cut);
+  const std::string file_of_cut = handover::Cut::file_of(request.cut);
   const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
-  const Cut cut = request.cut.empty() ? Cut() : Cut(request.cut, scene, surface);  // pure, as check_copies() is
+  const handover::Cut cut =
+      request.cut.empty() ? handover::Cut() : handover::Cut(request.cut, scene, surface);  // pure, as check_copies() is
   if (!cut.on()) check_vessel(request, scene.container);
-  if (!cut.on() && scene.container.is_mesh() && request.format == "liggghts") {
-    names.surface = std::filesystem::path(names.request.file).replace_extension(".stl").string();
+  SpringsPlan springs = plan_springs(request, scene, format.springs, file->has_springs());
+  if (const std::string ending = third_ending(request, scene, format, springs.on()); !ending.empty()) {
+    names.third = std::filesystem::path(names.request.file).replace_extension(ending).string();
   }
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });
   const Selection selection(*file, scene, request, cut);
-  const Specimen specimen = survey(comm, *file, selection, names.request, scene);
+  Specimen specimen = survey(comm, *file, selection, names.request, scene);
+  take_springs(comm, *file, springs, specimen);
   write_files(comm, names, format.make(specimen), selection);
-  return {names.files(), specimen.count, specimen.volume, specimen.cut, specimen.cut_fraction};
+  return {names.files(), specimen.count,        specimen.volume,
+          specimen.cut,  specimen.cut_fraction, words_of(springs, specimen)};
 }
 
 }  // namespace packmpi::exporters

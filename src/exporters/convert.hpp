@@ -35,6 +35,7 @@ struct Converted {
   double volume = 0.0;        ///< [m3] of the particles as spheres; 9 digits
   std::string cut{};          ///< in words what was cut out; "": nothing
   double cut_fraction = 0.0;  ///< its solid fraction, spheres cut by its sides, to 1e-9
+  std::string springs{};      ///< what becomes of the springs of friction, in words; "": nothing to tell
 };
 
 /// One format, for help and documentation.
@@ -47,7 +48,8 @@ struct FormatWords {
 [[nodiscard]] std::vector<FormatWords> convert_formats();
 
 /// Collective. Reads the pack in batches and writes it in the format asked, each rank its share of the particles: the
-/// same bytes on any number of ranks, in memory that does not depend on the particles. Files appear whole or not at
+/// same bytes on any number of ranks, in memory that does not depend on the particles, but for springs of friction, for
+/// which rank 0 needs 250 bytes a contact. Files appear whole or not at
 /// all. Throws on all ranks, before anything is written where possible: Error(bad_input) for files that exist, a format
 /// that is not known, copies along a wall; Error(io_failure) for what cannot be read or written.
 Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request);

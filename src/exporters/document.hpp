@@ -25,7 +25,7 @@ struct Document {
   std::vector<Section> sections;
   std::string tail;
   std::string companion;  ///< "": none
-  std::string surface;    ///< of a mesh, as STL, for codes that read it from a file; "": none
+  std::string third;      ///< a surface of triangles or springs, for codes that read them from a file; "": none
 };
 
 /// A value of a raw binary file, little-endian as x86-64 has it.

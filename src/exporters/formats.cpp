@@ -7,11 +7,15 @@ namespace {
 
 constexpr std::array table{
     Format{{"lammps", ".lammps.data", ".in", "LAMMPS: data file (atom_style sphere) and an in-file that runs it"},
-           lammps::make},
+           lammps::make,
+           SpringsBy::motion_of_radii},
     Format{
         {"liggghts", ".liggghts.data", ".in", "LIGGGHTS: data file (atom_style granular) and an in-file that runs it"},
-        liggghts::make},
-    Format{{"yade", ".yade.txt", ".py", "YADE: text for SpherePack.load and a script that runs it"}, yade::make},
+        liggghts::make,
+        SpringsBy::motion_of_middles},
+    Format{{"yade", ".yade.txt", ".py", "YADE: text for SpherePack.load and a script that runs it"},
+           yade::make,
+           SpringsBy::forces},
     Format{{"esys", ".esys.geo", ".txt", "ESyS-Particle, GenGeo: LSMGeometry 1.2 and a note on the material"},
            esys::make},
     Format{{"mercurydpm", ".mercury.data", ".cpp", "MercuryDPM: text for readDataFile and a driver that reads it"},

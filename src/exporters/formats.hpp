@@ -5,12 +5,14 @@
 
 #include "exporters/convert.hpp"
 #include "exporters/document.hpp"
+#include "exporters/springs.hpp"
 
 namespace packmpi::exporters {
 
 struct Format {
   FormatWords words;
   Document (*make)(const Specimen&);
+  SpringsBy springs = SpringsBy::none;
 };
 [[nodiscard]] std::span<const Format> formats();
 

@@ -13,7 +13,7 @@ namespace {
 
 /// The law of pairs or walls of the one material: by its stiffness, as of a wall's modulus LAMMPS makes another E* than
 /// of a pair's. `share` of a particle's own E / (1 - nu^2) is E*: 1/2 against its like, 1 against what is rigid.
-std::string contact(const Specimen& s, double share, double friction) {
+std::string contact(const Specimen& s, double share, double friction, int runs = 1) {
   const input::Input& in = s.scene.in;
   const double nu = in.particles.poisson_ratio;
   return lammps_law(s,
@@ -21,16 +21,21 @@ std::string contact(const Specimen& s, double share, double friction) {
                      .shear_modulus = share * shear_modulus(s) / (2.0 - nu),
                      .damping_ratio = in.contact.damping_ratio,
                      .friction = {friction, friction, in.contact.rolling_friction, in.contact.twisting_friction}},
-                    share);
+                    share, runs);
 }
 
-/// A floor; over it a lid, which moves by the variable `lid` [m].
+/// Under a lid, without springs: servos and a while of more friction make up for them.
+bool servoed(const Specimen& s) { return s.scene.container.lid && s.springs.of.empty(); }
+
+/// A floor; over it a lid, which moves by the variable `lid` [m] if servoed.
 std::string floor_and_lid(const Specimen& s, const std::string& law) {
   const char up = "xyz"[s.vertical()];
   if (!s.has(geometry::Surface::floor)) return "";
   std::string text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
   const std::optional<double>& lid = s.scene.container.lid;
   if (!lid) return text;
+  if (!servoed(s))
+    return text + fmt::format("fix             lid all wall/gran granular {} {}plane NULL {}\n", law, up, *lid);
   text += s.flat() ? fmt::format("region          lid plane 0 {} 0 0 -1 0 move NULL v_lid NULL\n", *lid)
                    : fmt::format("region          lid plane 0 0 {} 0 0 -1 move NULL NULL v_lid\n", *lid);
   return text + fmt::format("fix             lid all wall/gran/region granular {} region lid\n", law);
@@ -39,7 +44,7 @@ std::string floor_and_lid(const Specimen& s, const std::string& law) {
 std::string walls(const Specimen& s) {
   const input::Input& in = s.scene.in;
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
-  const std::string law = contact(s, share, in.contact.wall_friction);
+  const std::string law = contact(s, share, in.contact.wall_friction, runs_with_walls(s));
   std::string text;
   if (s.round()) {
     text =
@@ -77,9 +82,9 @@ std::string stress_columns(const Specimen& s) {
   return text;
 }
 
-/// Servos that keep the stress of step 0, and a while in which springs that a pack does not carry over come back.
+/// Servos that keep the stress of step 0, and a while in which springs that are not in the pack come back.
 std::string servos(const Specimen& s) {
-  if (!s.scene.container.lid) return "";
+  if (!servoed(s)) return "";
   const double mass = s.volume * s.scene.in.particles.density / (s.copies[0] * s.copies[1]);
   const double sheet = confine::thickness(s.scene);  // in the plane LAMMPS has forces over lengths
   const double modulus = sheet * confine::gains_of(s.scene, *s.scene.container.lid, mass).modulus;
@@ -103,7 +108,7 @@ std::string servos(const Specimen& s) {
                      press, modulus);
 }
 std::string hold(const Specimen& s) {
-  if (!s.scene.container.lid) return "";
+  if (!servoed(s)) return "";
   constexpr double rougher = 10.0;
   const double friction = s.scene.in.contact.friction;
   return fmt::format(
@@ -140,28 +145,26 @@ std::string in_file(const Specimen& s) {
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
   text += drag(s);
-  text += fmt::format("fix             move all {}\n", s.rotation ? "nve/sphere" : "nve");
   constexpr const char* report =
       "print           \"PACK at step $(step): $(atoms) particles, volume $(v_volume_now:%.17g) m3, mass "
       "$(mass(all):%.17g) kg, largest contact force $(v_force_now:%.17g) N\"\n";
   text += fmt::format(
-      "timestep        {0}\n\n"
-      "compute         diameter all property/atom diameter\n"
+      "\ncompute         diameter all property/atom diameter\n"
       "variable        volume atom PI/6*c_diameter*c_diameter*c_diameter\n"
       "compute         volume all reduce sum v_volume\n"
       "compute         contact all pair/local force\n"
       "compute         strongest all reduce max c_contact\n"
       "variable        volume_now equal c_volume\n"
       "variable        force_now equal c_strongest\n"
-      "{4}thermo_style    custom step atoms ke c_volume c_strongest{5}\n"
+      "{3}thermo_style    custom step atoms ke c_volume c_strongest{4}\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
-      "run             0\n{1}\n"
+      "run             0\n{0}\n"
       "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
       "anew before another one\n"
-      "{6}{2}{3}{7}run             ${{steps}}\n{1}",
-      s.scene.container.lid ? s.scene.confining_step : s.scene.time_step, report,
-      s.scene.features.mixture ? lammps_walls(s) : walls(s), s.flat() ? "fix             plane all enforce2d\n" : "",
-      stress_measures(s), stress_columns(s), servos(s), hold(s));
+      "{5}{1}{2}{7}{6}run             ${{steps}}\n{0}",
+      report, s.scene.features.mixture ? lammps_walls(s) : walls(s),
+      s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
+      hold(s), begin_to_move(s, "set             group all omega 0 0 0\n"));
   return text;
 }
 
@@ -171,7 +174,7 @@ Document make(const Specimen& s) {
   Document document;
   document.sections.push_back({data_head(s, "LAMMPS", kinds(s), "Atoms  # sphere"),
                                [&s](Text& out, const Outgoing& p) { atom_row(out, p, density_of(s, p)); }});
-  document.sections.push_back(velocities());
+  document.sections.push_back(velocities(s));
   document.companion = in_file(s);
   return document;
 }

@@ -2,10 +2,13 @@
 
 #include <fmt/compile.h>
 
+#include "exporters/law.hpp"
+
 namespace packmpi::exporters {
 namespace {
 
-constexpr std::size_t longest_line = 250;  // 254 characters are read
+constexpr std::size_t longest_line = 250;   // 254 characters are read
+constexpr double step_of_springs = 1000.0;  // [s]
 
 void velocity_row(Text& out, const Outgoing& p) {
   const Vec3& v = p.row.velocity;
@@ -33,7 +36,36 @@ void atom_row(Text& out, const Outgoing& p, double density) {
                  p.row.position[2]);
 }
 
-Section velocities() { return {"\nVelocities\n\n", velocity_row}; }
+Section velocities(const Specimen& s) {
+  const char* head = "\nVelocities\n\n";
+  if (s.springs.of.empty()) return {head, velocity_row};
+  const auto particles = static_cast<GlobalId>(s.springs.of.size());
+  return {head, [&s, particles](Text& out, const Outgoing& p) {
+            const handover::Motion& motion = s.springs.of[static_cast<std::size_t>((p.row.id - 1) % particles)];
+            Outgoing moved = p;
+            for (std::size_t c = 0; c < 3; ++c) {
+              moved.row.velocity[c] = motion.displacement[c] / step_of_springs;
+              moved.row.spin[c] = motion.turn[c] / step_of_springs;
+            }
+            velocity_row(out, moved);
+          }};
+}
+
+std::string begin_to_move(const Specimen& s, const char* stand) {
+  const std::string move =
+      fmt::format("fix             move all {}\ntimestep        {}\n", s.rotation ? "nve/sphere" : "nve", s.step());
+  if (s.springs.of.empty()) {
+    return (remembers(s) ? "# not carried over: springs of friction; they come back while the pack settles\n" : "") +
+           move;
+  }
+  return fmt::format(
+      "# springs of friction: velocities in the data file are no motion of the pack, but make each spring as long as "
+      "it "
+      "is\n"
+      "# in one step so long that no dashpot counts, in which nothing moves; then all stands still\n"
+      "timestep        {}\nrun             1\nvelocity        all set 0 0 0\n{}reset_timestep  0\n{}",
+      step_of_springs, stand, move);
+}
 
 std::string boundary_words(const Specimen& s) {
   std::string words;

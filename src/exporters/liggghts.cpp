@@ -61,7 +61,7 @@ std::string walls(const Specimen& s) {
         "fix             surface all mesh/surface file ${{surface}} type {1}\n"
         "fix             wall_mesh all wall/gran model hertz tangential ${{tangential}}{2} mesh n_meshes 1 meshes "
         "surface{3}\n",
-        liggghts_word(s.surface_file()), type, rolling(s), limit(s));
+        liggghts_word(s.beside(".stl")), type, rolling(s), limit(s));
   }
   const auto cylinder = [&](const char* name, double radius) {
     text += fmt::format(
@@ -104,14 +104,12 @@ std::string in_file(const Specimen& s) {
                       s.flat() ? "0 -1 0" : "0 0 -1");
   if (in.drag.coefficient > 0.0) text += fmt::format("fix             drag all viscous {}\n", in.drag.coefficient);
   text += walls(s);
-  text += fmt::format("fix             move all {}\n", s.rotation ? "nve/sphere" : "nve");
   if (s.flat()) text += "fix             plane all enforce2d\n";
   constexpr const char* report =
       "print           \"PACK after ${now} steps: ${count} particles, volume ${volume_now} m3, mass ${mass_now} kg, "
       "largest force on a particle ${force_now} N\"\n";
   text += fmt::format(
-      "timestep        {0}\n\n"
-      "compute         diameter all property/atom diameter\n"
+      "\ncompute         diameter all property/atom diameter\n"
       "variable        volume atom PI/6*c_diameter*c_diameter*c_diameter\n"
       "compute         volume all reduce sum v_volume\n"
       "variable        force atom sqrt(fx*fx+fy*fy+fz*fz)\n"
@@ -120,8 +118,8 @@ std::string in_file(const Specimen& s) {
       "variable        mass_now equal mass(all)\nvariable        force_now equal c_strongest\n"
       "thermo_style    custom step atoms ke c_volume c_strongest\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
-      "run             0\n{1}run             ${{steps}}\n{1}",
-      s.scene.time_step, report);
+      "run             0\n{0}{1}run             ${{steps}}\n{0}",
+      report, begin_to_move(s, "set             group all omegax 0 omegay 0 omegaz 0\n"));
   return text;
 }
 
@@ -135,9 +133,9 @@ Document make(const Specimen& s) {
          const double density = density_of(s, p);
          atom_row(out, p, flat ? 4.0 / 3.0 * p.row.radius * density : density);
        }});
-  document.sections.push_back(velocities());
+  document.sections.push_back(velocities(s));
   document.companion = in_file(s);
-  if (s.scene.container.is_mesh()) document.surface = mesh::text_stl(s.scene.container.room->shell());
+  if (s.scene.container.is_mesh()) document.third = mesh::text_stl(s.scene.container.room->shell());
   return document;
 }
 

@@ -56,11 +56,26 @@ std::string kinds_words(const Specimen& s, std::string_view word, int first) {
   return words;
 }
 
-std::string lammps_law(const Specimen& s, const PairMaterial& of, double share) {
+namespace {
+
+/// LAMMPS makes the damping from it.
+std::string restitution_word(double damping_ratio, int runs) {
+  constexpr double most = 0.5, root_6 = 2.449489742783178;  // beyond, there is none that would do for two runs
+  const double e = tsuji_restitution(damping_ratio);
+  if (runs == 1 || damping_ratio > most) return fmt::format("{}", e);
+  return fmt::format("$((version<20221103)*{}+(version>=20221103)*{}:%.17g)", tsuji_restitution(e / root_6), e);
+}
+
+}  // namespace
+
+int runs_with_walls(const Specimen& s) { return s.springs.of.empty() && !s.scene.container.lid ? 1 : 2; }
+
+std::string lammps_law(const Specimen& s, const PairMaterial& of, double share, int runs) {
   constexpr double least = 1e-3, overlap = 5e-4;
   const bool history = remembers(s);
   const double xi = history ? of.damping_ratio : std::max(of.damping_ratio, least);
-  std::string words = fmt::format("hertz {} {} damping tsuji ", 4.0 / 3.0 * of.normal_modulus, tsuji_restitution(xi));
+  std::string words =
+      fmt::format("hertz {} {} damping tsuji ", 4.0 / 3.0 * of.normal_modulus, restitution_word(xi, runs));
   const std::string_view limit = s.scene.in.contact.tension_cutoff ? " limit_damping" : "";
   // Slip is damped by x normal dampings up to the limit; x makes that damping the same for every xi.
   if (!history)
@@ -102,7 +117,7 @@ std::string lammps_walls(const Specimen& s) {
   const double share = s.scene.in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
   for (const Region& region : round_regions(s)) text += region.line;
   for (int k = 0; k < components(s); ++k) {
-    const std::string law = lammps_law(s, scene::wall_material(s.scene.in, k), share);
+    const std::string law = lammps_law(s, scene::wall_material(s.scene.in, k), share, runs_with_walls(s));
     text += fmt::format("group           component{0} type {0}\n", k + 1);
     for (const Region& region : round_regions(s)) {
       text += fmt::format("fix             wall_{2}_{0} component{0} wall/gran/region granular {1} region {2}\n", k + 1,

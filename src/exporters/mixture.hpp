@@ -17,7 +17,12 @@ namespace packmpi::exporters {
 /// LAMMPS: "hertz ... tangential ..." of its granular styles. `share`: of the radius and mass of the widest particle,
 /// r* and m* of the constant springs of rolling: 1/2, at a wall 1. Sliding friction without memory is there a damping
 /// of slip up to Coulomb's limit, so it needs some.
-[[nodiscard]] std::string lammps_law(const Specimen& specimen, const scene::PairMaterial& of, double share);
+/// `runs`: of a wall, how many there are with it, as LAMMPS 29 Sep 2021 takes its restitution for that of its damping
+/// once more at each.
+[[nodiscard]] std::string lammps_law(const Specimen& specimen, const scene::PairMaterial& of, double share,
+                                     int runs = 1);
+/// Runs of the in-file once walls are there.
+[[nodiscard]] int runs_with_walls(const Specimen& specimen);
 /// LAMMPS: pair_coeff of each pair, and walls of each type.
 [[nodiscard]] std::string lammps_pairs(const Specimen& specimen);
 [[nodiscard]] std::string lammps_walls(const Specimen& specimen);

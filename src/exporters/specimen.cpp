@@ -159,7 +159,7 @@ namespace {
 
 /// Collective. What is known of a specimen that is cut out; its container stands around it.
 void survey_cut(const comm::Comm& comm, const Selection& selection, const scene::Scene& scene, Specimen& s) {
-  const Cut& cut = selection.cut();
+  const handover::Cut& cut = selection.cut();
   if (!cut.on()) return;
   const disk::IdBlocks share{selection.places(), comm.size()};
   const double whole = geometry::volume(scene.container.dimension, scene.sizes.largest());
@@ -239,7 +239,9 @@ std::array<Extent, 3> padded_box(const Specimen& s) {
   return box;
 }
 
-std::string Specimen::surface_file() const { return std::filesystem::path(file).replace_extension(".stl").string(); }
+std::string Specimen::beside(const char* ending) const {
+  return std::filesystem::path(file).replace_extension(ending).string();
+}
 
 std::vector<std::string> header_lines(const Specimen& s) {
   std::string box = s.round() ? vessel_words(s) : "box: " + axis_words(s, 0);

@@ -9,7 +9,8 @@
 
 #include "comm/comm.hpp"
 #include "exporters/convert.hpp"
-#include "exporters/cut.hpp"
+#include "handover/cut.hpp"
+#include "handover/springs.hpp"
 #include "pack/pack_file.hpp"
 #include "pack/pack_plan.hpp"
 #include "scene/scene.hpp"
@@ -27,13 +28,14 @@ struct Outgoing {
 class Selection {
  public:
   /// Both must live as long.
-  Selection(const pack::PackFile& file, const scene::Scene& scene, const ConvertRequest& request, const Cut& cut)
+  Selection(const pack::PackFile& file, const scene::Scene& scene, const ConvertRequest& request,
+            const handover::Cut& cut)
       : pack_(request.pack), file_(&file), scene_(&scene), trim_(request.trim), cut_(cut), copies_(request.copies) {}
 
   /// Places in the list: particles times copies. Trimmed particles have a place and are passed over.
   [[nodiscard]] std::int64_t places() const { return file_->count() * copies_[0] * copies_[1]; }
   [[nodiscard]] bool trims() const { return trim_ != Trim::none || cut_.on(); }
-  [[nodiscard]] const Cut& cut() const { return cut_; }
+  [[nodiscard]] const handover::Cut& cut() const { return cut_; }
   /// Of the particles of places [begin, end) what is in the specimen that is cut out, a quantum each rounded.
   [[nodiscard]] std::int64_t solid_quanta(std::int64_t begin, std::int64_t end, double quanta_a_volume) const;
   /// Calls take(row) for the particles of places [begin, end) in turn. Error(io_failure) if the pack is damaged.
@@ -49,7 +51,7 @@ class Selection {
   const pack::PackFile* file_;
   const scene::Scene* scene_;
   Trim trim_;
-  Cut cut_;
+  handover::Cut cut_;
   std::array<int, 2> copies_;
 };
 
@@ -66,13 +68,15 @@ struct Specimen {
   double duration = 0.0;      ///< [s] simulated when the pack was made
   Trim trim = Trim::none;
   std::array<int, 2> copies{1, 1};
-  std::int64_t count = 0;    ///< particles written
-  double volume = 0.0;       ///< [m3] of them, as spheres; 9 digits
-  double mass = 0.0;         ///< [kg] of them; 9 digits
-  Vec3 size{};               ///< [m] lateral extents of all copies, then H_d; z of a 2D pack: 0
-  double top = 0.0;          ///< [m] of the highest particle written
-  double widest = 0.0;       ///< [m] largest radius written; 1 if nothing is
-  Vec3 lowest{}, highest{};  ///< [m] of the centres
+  std::int64_t count = 0;     ///< particles written
+  double volume = 0.0;        ///< [m3] of them, as spheres; 9 digits
+  double mass = 0.0;          ///< [kg] of them; 9 digits
+  Vec3 size{};                ///< [m] lateral extents of all copies, then H_d; z of a 2D pack: 0
+  double top = 0.0;           ///< [m] of the highest particle written
+  double widest = 0.0;        ///< [m] largest radius written; 1 if nothing is
+  Vec3 lowest{}, highest{};   ///< [m] of the centres
+  handover::Motions springs;  ///< what makes the springs of friction, by the pack's ids; for codes that take them so
+  std::vector<pack::TouchingRow> touching;  ///< contacts with their forces; on rank 0, for codes that read forces
 
   [[nodiscard]] bool flat() const { return scene.container.dimension == 2; }
   /// A vessel that is no box: its walls go around the axis at x = y = radius.
@@ -80,8 +84,10 @@ struct Specimen {
   [[nodiscard]] bool has(geometry::Surface wall) const { return scene.container.has(wall); }
   [[nodiscard]] double radius() const { return scene.container.radius(); }  ///< [m] of it
   [[nodiscard]] std::size_t vertical() const { return static_cast<std::size_t>(scene.container.vertical()); }
-  /// The name of the file that a mesh's surface is in, without folder.
-  [[nodiscard]] std::string surface_file() const;
+  /// The name of a third file, without folder.
+  [[nodiscard]] std::string beside(const char* ending) const;
+  /// [s] with which the pack was last moved.
+  [[nodiscard]] double step() const { return scene.container.lid ? scene.confining_step : scene.time_step; }
   /// Of axis x, y or z.
   [[nodiscard]] bool periodic(std::size_t axis) const { return axis < vertical() && scene.container.periodic[axis]; }
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
@@ -66,18 +67,74 @@ std::string facets(const Specimen& s) {
   return text + "]\nwalls = [utils.facet([points[k] for k in t], material='walls') for t in triangles]\n";
 }
 
+/// A plane wall, by its number in the pack.
+struct Plane {
+  int number;
+  std::size_t axis;
+  double at;
+};
+
+/// In the order in which the script has them; what is not plane comes after them.
+std::vector<Plane> planes(const Specimen& s) {
+  std::vector<Plane> all;
+  if (s.has(geometry::Surface::floor)) all.push_back({0, s.vertical(), 0.0});
+  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
+    if (s.periodic(axis)) continue;
+    all.push_back({static_cast<int>(2 * axis + 1), axis, 0.0});
+    all.push_back({static_cast<int>(2 * axis + 2), axis, s.size[axis]});
+  }
+  if (const auto& lid = s.scene.container.lid) all.push_back({5, s.vertical(), *lid});
+  return all;
+}
+
 std::string walls(const Specimen& s) {
   if (s.scene.container.is_mesh()) return facets(s);
-  std::string text = fmt::format("walls = [utils.wall(0, axis={}, sense=1, material='walls')]\n", s.vertical());
-  if (s.round()) return text + mantle(s);
-  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
-    if (s.periodic(axis)) continue;
-    text += fmt::format(
-        "walls += [utils.wall(0, axis={0}, sense=1, material='walls'), utils.wall({1}, axis={0}, sense=-1, "
-        "material='walls')]\n",
-        axis, s.size[axis]);
+  std::string text = "walls = []\n";
+  for (const Plane& plane : planes(s)) {
+    text += fmt::format("walls.append(utils.wall({}, axis={}, sense={}, material='walls'))\n", plane.at, plane.axis,
+                        plane.at > 0.0 ? -1 : 1);
+  }
+  return s.round() ? text + mantle(s) : text;
+}
+
+/// A line for each contact: two bodies of the script, and the force of friction on the first [N].
+std::string springs(const Specimen& s) {
+  std::string text;
+  const std::vector<Plane> walls = planes(s);
+  for (const pack::TouchingRow& row : s.touching) {
+    std::int64_t other = row.second;
+    if (row.wall >= 0) {
+      const auto plane = std::ranges::find(walls, row.wall, &Plane::number);
+      if (plane == walls.end()) continue;
+      other = s.count + (plane - walls.begin());
+    }
+    const double along = dot(row.force, row.normal);
+    text += fmt::format("{} {} {} {} {}\n", row.first, other, row.force[0] - along * row.normal[0],
+                        row.force[1] - along * row.normal[1], row.force[2] - along * row.normal[2]);
   }
   return text;
+}
+
+/// In which contacts are found; with springs so short that nothing moves without them.
+std::string first_step(const Specimen& s) {
+  return s.touching.empty() ? "O.run(1, True)\n"
+                            : fmt::format("O.dt = {:g}\nO.run(1, True)\nO.dt = {}\n", 1e-6 * s.step(), s.step());
+}
+
+/// After it.
+std::string stretch(const Specimen& s) {
+  if (s.touching.empty()) return "";
+  return fmt::format(
+      "# springs of friction: each is given the force it has in the pack, and all stands still again\n"
+      "for line in open(os.environ.get('PACK_SPRINGS', {})):\n"
+      "    first, second, *force = line.split()\n"
+      "    first, second = int(first), int(second)\n"
+      "    if not O.interactions.has(first, second) or not O.interactions[first, second].isReal:\n"
+      "        continue\n"
+      "    i = O.interactions[first, second]\n"
+      "    i.phys.shearElastic = Vector3(*map(float, force)) * (-1 if i.id1 == first else 1)\n"
+      "for i in ids:\n    O.bodies[i].state.vel = O.bodies[i].state.angVel = Vector3.Zero\n",
+      python_string(s.beside(".springs")));
 }
 
 /// Degrees of freedom that are fixed.
@@ -99,17 +156,27 @@ std::string materials(const Specimen& s) {
                      in.contact.wall_friction, "walls");
 }
 
+constexpr const char* report =
+    "def report():\n"
+    "    volume = sum(4 / 3 * math.pi * O.bodies[i].shape.radius ** 3 for i in ids)\n"
+    "    mass = sum(O.bodies[i].state.mass for i in ids)\n"
+    "    force = max((i.phys.normalForce.norm() for i in O.interactions\n"
+    "                 if i.isReal and i.id1 < len(ids) and i.id2 < len(ids)), default=0.0)\n"
+    "    print('PACK after %d steps: %d particles, volume %.17g m3, mass %.17g kg, largest contact force %.17g N'\n"
+    "          % (O.iter, len(ids), volume, mass, force), flush=True)\n\n\n";
+
 std::string script(const Specimen& s) {
   const input::Input& in = s.scene.in;
   const double g = in.jamming.gravity;
   std::string text = notes(s, Fluid::not_carried, "# ");
   text += fmt::format(
-      "# not carried over: velocities and spins{0}\n"
+      "# not carried over: velocities and spins{0}{3}\n"
       "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
       "import math\nimport os\nfrom yade import {2}pack, utils\n\n"
       "data = os.environ.get('PACK_DATA', {1})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
       remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file),
-      s.round() ? "geom, " : "");
+      s.round() ? "geom, " : "",
+      remembers(s) && s.touching.empty() ? "; springs of friction, which come back while the pack settles" : "");
   const bool mixture = s.scene.features.mixture;
   text += mixture ? yade_materials(s) : materials(s);
   text += mixture ? yade_reader(s)
@@ -123,23 +190,14 @@ std::string script(const Specimen& s) {
   text += fmt::format(
       "O.engines = [\n    ForceResetter(),\n"
       "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(){3}], allowBiggerThanPeriod=True),\n"
-      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(){4}],\n"
+      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(hertzian=True){4}],\n"
       "                    [Ip2_FrictMat_FrictMat_MindlinPhys({0})],\n"
       "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
       "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
       mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", in.contact.damping_ratio),
-      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.scene.time_step,
-      s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom()" : "");
-  return text +
-         "def report():\n"
-         "    volume = sum(4 / 3 * math.pi * O.bodies[i].shape.radius ** 3 for i in ids)\n"
-         "    mass = sum(O.bodies[i].state.mass for i in ids)\n"
-         "    force = max((i.phys.normalForce.norm() for i in O.interactions\n"
-         "                 if i.isReal and i.id1 < len(ids) and i.id2 < len(ids)), default=0.0)\n"
-         "    print('PACK after %d steps: %d particles, volume %.17g m3, mass %.17g kg, largest contact force %.17g "
-         "N'\n"
-         "          % (O.iter, len(ids), volume, mass, force), flush=True)\n\n\n"
-         "O.run(1, True)\nreport()\nO.run(steps, True)\nreport()\n";
+      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.step(),
+      s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "");
+  return text + report + first_step(s) + "report()\n" + stretch(s) + "O.run(steps, True)\nreport()\n";
 }
 
 }  // namespace
@@ -153,6 +211,7 @@ Document make(const Specimen& s) {
                                                 x[0], x[1], x[2], p.row.radius, mixture ? p.row.component : -1);
                                }});
   document.companion = script(s);
+  if (!s.touching.empty()) document.third = springs(s);
   return document;
 }
 

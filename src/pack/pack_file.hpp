@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "confine/state.hpp"
 #include "disk/sealed_file.hpp"
@@ -9,6 +10,16 @@
 #include "pack/pack.hpp"
 
 namespace packmpi::pack {
+
+/// A contact that a pack tells of.
+struct TouchingRow {
+  GlobalId first = 0, second = 0;  ///< first < second; at a wall: the particle, and -1
+  std::int32_t wall = -1;          ///< its number (doc/file_format.md); -1: there are two particles
+  double overlap = 0.0;            ///< [m]
+  Vec3 normal{};                   ///< from the first to the second or into the wall
+  Vec3 force{};                    ///< [N] on the first
+  Vec3 tangential{};               ///< [m] of the spring of friction, of the second or the wall past the first
+};
 
 /// Rank-local; several ranks may each have the same file open. Errors: Error(io_failure), words without the path.
 class PackFile {
@@ -28,6 +39,10 @@ class PackFile {
   /// `features` if the pack has none of it. It is checked that ends can be those of two of the particles or of one and
   /// a wall, and that numbers are finite. Cost: O(share).
   [[nodiscard]] Histories histories(Rank rank, int ranks) const;
+  [[nodiscard]] bool has_springs() const { return file_.has("/contacts/tangential_displacement"); }
+  /// All contacts with their springs of friction, those at walls last; none if the pack does not have them. Ends and
+  /// numbers are checked. Cost: O(contacts), 120 bytes each.
+  [[nodiscard]] std::vector<TouchingRow> touching() const;
   [[nodiscard]] confine::State confined() const;  ///< lid and sides; off if there are none
   [[nodiscard]] std::string scene() const;        ///< the effective input, in the keys of today
   [[nodiscard]] std::string text(const char* object, const char* attribute) const;

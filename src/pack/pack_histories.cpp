@@ -95,10 +95,66 @@ void explained_of_pack(const std::string& path, Action&& action) {
 
 }  // namespace
 
+namespace {
+
+std::int64_t rows_in(const disk::SealedFile& file, const std::string& dataset) {
+  return static_cast<std::int64_t>(file.extent<std::int64_t>(dataset).at(0));
+}
+
+/// What both groups have.
+void read_touching(const disk::SealedFile& file, const std::string& group, std::int64_t total,
+                   std::vector<TouchingRow>& into) {
+  const disk::Range all{total, 0, total};
+  const auto overlap = file.rows<double, double>(group + "/overlap", all);
+  const auto normal = file.rows<double, Vec3>(group + "/normal", all);
+  const auto force = file.rows<double, Vec3>(group + "/force", all);
+  const auto tangential = file.rows<double, Vec3>(group + "/tangential_displacement", all);
+  for (std::size_t k = 0; k < overlap.size(); ++k) {
+    into.push_back({.overlap = overlap[k], .normal = normal[k], .force = force[k], .tangential = tangential[k]});
+  }
+}
+
+void check_touching(const TouchingRow& row, std::int64_t particles) {
+  const bool ends = row.wall >= 0 ? row.first >= 0 && row.first < particles
+                                  : row.first >= 0 && row.first < row.second && row.second < particles;
+  if (!ends) refuse_springs(fmt::format("its contact of {} and {} has ends that cannot be", row.first, row.second));
+  const double sum =
+      row.overlap + dot(row.normal, row.normal) + dot(row.force, row.force) + dot(row.tangential, row.tangential);
+  if (!std::isfinite(sum))
+    refuse_springs(fmt::format("the contact of {} and {} has no numbers", row.first, row.second));
+}
+
+}  // namespace
+
+std::vector<TouchingRow> PackFile::touching() const {
+  std::vector<TouchingRow> rows;
+  if (!has_springs()) return rows;
+  const std::int64_t pairs = rows_in(file_, "/contacts/pair");
+  read_touching(file_, "/contacts", pairs, rows);
+  const auto ends = file_.rows<std::int64_t, std::array<std::int64_t, 2>>("/contacts/pair", {pairs, 0, pairs});
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    rows[k].first = ends[k][0];
+    rows[k].second = ends[k][1];
+  }
+  const std::int64_t walls = rows_in(file_, "/wall_contacts/particle");
+  read_touching(file_, "/wall_contacts", walls, rows);
+  const auto particle = file_.rows<std::int64_t, std::int64_t>("/wall_contacts/particle", {walls, 0, walls});
+  const auto wall = file_.rows<std::int32_t, std::int32_t>("/wall_contacts/wall", {walls, 0, walls});
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    TouchingRow& row = rows[ends.size() + k];
+    row.first = particle[k];
+    row.second = -1;
+    row.wall = wall[k];
+    if (row.wall < 0) refuse_springs(fmt::format("particle {} touches wall {}", row.first, row.wall));
+  }
+  for (const TouchingRow& row : rows) check_touching(row, count_);
+  return rows;
+}
+
 Histories PackFile::histories(Rank rank, int ranks) const {
   Histories all;
   all.features.dimension = dimension_;
-  all.features.memory = file_.has("/contacts/tangential_displacement");
+  all.features.memory = has_springs();
   if (!all.any()) return all;
   all.features.rolling = file_.has("/contacts/rolling_displacement");
   read_pairs(file_, rank, ranks, all);

@@ -20,10 +20,11 @@ except ImportError as error:
     print(f"skipped: the Python package {error.name} is missing (scripts/setup.sh --plots)")
     sys.exit(77)
 
-SMALL = ["--set", "layers.maximum=2", "--set", "layers.duration=0.4", "--set", "rest.wait=0", "--set", "output.contacts=true", "--quiet"]
+SMALL = ["--set", "layers.maximum=2", "--set", "rest.wait=0", "--set", "output.contacts=true", "--quiet"]
 AS_THE_OTHERS = ["particles.density=1000", "particles.youngs_modulus=1e8", "particles.poisson_ratio=0.25", "contact.damping_ratio=0.1"]
-SCENES = {"quickstart": ["--set", "container.size=[0.3, 0.3, 0.45]"], "paper_5_1": ["--set", "container.size=[0.4, 0.5]"],
-          "pebbles": [word for one in AS_THE_OTHERS for word in ("--set", one)]}
+SCENES = {"quickstart": ["--set", "container.size=[0.3, 0.3, 0.45]", "--set", "layers.duration=0.4"],
+          "paper_5_1": ["--set", "container.size=[0.4, 0.5]", "--set", "layers.duration=0.4"],
+          "pebbles": [word for one in AS_THE_OTHERS for word in ("--set", one)] + ["--set", "layers.duration=0.4", "--set", "dynamics.relaxation=0", "--set", "dynamics.window=0"]}   # they still move: velocities are carried, not springs
 SAID = re.compile(r"^PACK .*?(\d+) particles, volume (\S+) m3, mass (\S+) kg, largest (?:contact )?force.*? (\S+) N$",
                   re.MULTILINE)
 

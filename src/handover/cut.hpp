@@ -1,4 +1,4 @@
-/// A specimen that is taken out of a pack: `convert --cut`. Private to this module.
+/// A specimen that is taken out of a pack: `convert --cut`..
 #pragma once
 #include <memory>
 #include <string>
@@ -7,7 +7,7 @@
 #include "pack/pack_plan.hpp"
 #include "scene/scene.hpp"
 
-namespace packmpi::exporters {
+namespace packmpi::handover {
 
 /// A box, a cylinder, a sphere or a closed surface of a file inside a pack's container. Particles that are wholly
 /// inside it are kept, and move with its lower corner to the origin. Local.
@@ -54,4 +54,4 @@ class Cut {
   std::string file_;                              // its name, without folder
 };
 
-}  // namespace packmpi::exporters
+}  // namespace packmpi::handover

@@ -1,4 +1,4 @@
-#include "exporters/cut.hpp"
+#include "handover/cut.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@
 #include "mesh/file.hpp"
 #include "tables/units.hpp"
 
-namespace packmpi::exporters {
+namespace packmpi::handover {
 namespace {
 
 [[noreturn]] void refuse_cut(const std::string& words, const std::string& reason) {
@@ -315,4 +315,4 @@ std::string Cut::words() const {
   return fmt::format("a box of {:g} x {:g} x {:g} m", size_[0], size_[1], size_[2]);
 }
 
-}  // namespace packmpi::exporters
+}  // namespace packmpi::handover
