@@ -421,7 +421,7 @@ std::vector<Key> program_keys() {
     whole("ensemble.packs", at(&Input::ensemble, &Ensemble::packs), between(1, 1 << 12), "1", "Packs of a set. Pack p of set s has the seed of the scene + 10000 (s - 1) + p - 1, and the bits of a run of its own with it."),
     word("checkpoint.every", at(&Input::checkpoint, &Checkpoint::every), R"("10min")",
          "Wall time between checkpoints (\"30 s\", \"10min\", \"2h\"), or time steps (\"5000 steps\"); \"off\": only when told to stop."),
-    word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps and forces, too."),
+    word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps, forces and springs, too: with them a converted pack stays at rest."),
     word("output.analysis", at(&Input::output, &Output::analysis), "false", "Measure the pack inside when it is done, as `packmpi analyze` would: NAME.analysis.json."),
     real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
          "Simulated time between rows of NAME.steps.csv; 0: a row each step."),
