@@ -66,6 +66,22 @@ double between(const std::vector<double>& x, const std::vector<double>& y, doubl
   return y.back();
 }
 
+// By layers: the mean over the trials that have a slab then; 0 before there is any.
+std::vector<double> slab_excess(const std::vector<Trial>& trials) {
+  std::size_t layers = 0;
+  for (const Trial& trial : trials) layers = std::max(layers, trial.slabs.size());
+  std::vector<double> excess(layers, 0.0);
+  for (std::size_t k = 0; k < layers; ++k) {
+    double count = 0.0;
+    for (const Trial& trial : trials) {
+      if (k >= trial.slabs.size() || !(trial.slabs[k] > 0.0)) continue;
+      count += 1.0;
+      excess[k] += (trial.slabs[k] - trial.filled - excess[k]) / count;
+    }
+  }
+  return excess;
+}
+
 // What the curve foresees of a slab: of each layer's part of it, by the layer's knob.
 double foreseen(const Filling& filling, const Slab& slab) {
   double sum = 0.0, bottom = 0.0;
@@ -75,7 +91,9 @@ double foreseen(const Filling& filling, const Slab& slab) {
     if (part > 0.0) sum += part * filled_at(filling, filling.layer_knobs[k]);
     bottom = top;
   }
-  return sum / slab.depth();
+  const std::vector<double>& excess = filling.slab_excess;
+  return sum / slab.depth() +
+         (excess.empty() ? 0.0 : excess[std::min(filling.layer_surfaces.size(), excess.size()) - 1]);
 }
 
 }  // namespace
@@ -111,6 +129,7 @@ Filling curve_of(std::vector<Trial> trials) {
     curve.filled.push_back(trial.filled);
     curve.relaxed.push_back(trial.relaxed);
   }
+  curve.slab_excess = slab_excess(trials);
   curve.filled = falling(curve.filled);
   curve.relaxed = falling(curve.relaxed);
   return curve;

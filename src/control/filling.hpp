@@ -18,7 +18,8 @@ struct Trial {
   Knob knob = 0.0;
   double filled = 0.0;   ///< before the final relaxation
   double relaxed = 0.0;  ///< after it, with the scene's own friction; of target.state = "confined" under the stress
-  double coordination = 0.0;  ///< then
+  double coordination = 0.0;    ///< then
+  std::vector<double> slabs{};  ///< what was measured after each layer, as of a bed that is corrected; 0: nothing was
 };
 
 /// Loosest and densest solid fraction.
@@ -34,6 +35,9 @@ struct Filling {
   double bias = 0.0;  ///< what finished layers have more than the sample foresees
   // The sample's curve, in the order of knobs: what comes of them, falling.
   std::vector<double> knobs, filled, relaxed;
+  // What a slab that is measured after a layer has more than the bulk when all layers are there, on the mean of the
+  // sample's trials: it lies nearer to floor and surface, and its newest layers have settled for less long.
+  std::vector<double> slab_excess;
   // Of each layer inserted: its knob; of each settled: the bed's surface after it [m], and the solid fraction of the
   // bed that is buried deep enough, measured then; 0: none was.
   std::vector<double> layer_knobs, layer_surfaces, layer_fractions;
@@ -49,8 +53,9 @@ struct Slab {
 /// What weight, and the stress that comes after, add to the solid fraction of a bed by pressing its particles into each
 /// other.
 struct Squeeze {
-  double sample = 0.0;   ///< in the bulk of the sample, on the mean
-  double ordered = 0.0;  ///< in the same when it has the density that is ordered: with the stress, if under one
+  double sample = 0.0;   ///< in the slab that is measured of the sample after as many layers, or after its last one
+  double ordered = 0.0;  ///< in the bulk of the sample, on the mean, when it has the density that is ordered: with the
+                         ///< stress, if under one
   double now = 0.0;      ///< in the slab that is measured
   double next = 0.0;     ///< in the end, in the layer that is filled in next
 };

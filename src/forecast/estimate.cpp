@@ -335,7 +335,7 @@ std::int64_t steps_under_stress(const scene::Scene& sample) {
 // As if one after the other: ranks share only the first ones.
 void add_search(const scene::Scene& scene, report::Estimate& e) {
   if (!scene.in.target) return;
-  const run::Sample sample = run::sample_of(scene);
+  const control::Sample sample = control::sample_of(scene);
   const std::int64_t a_layer = scene::particles_a_layer(sample.scene);
   const std::int64_t layers = scene::expected_layers(sample.scene, scene::expected_fraction(sample.scene).value);
   const std::int64_t extremes = scene.in.target->relative_density ? 2 * run::seeds_of_extremes : 0;

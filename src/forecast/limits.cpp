@@ -37,7 +37,7 @@ input::Input with_target(const comm::Comm& comm, const std::string& path, const 
   return input::read(comm, path, more);
 }
 
-std::string protocol_of(const input::Input& in, const run::Sample& sample) {
+std::string protocol_of(const input::Input& in, const control::Sample& sample) {
   return fmt::format(
       "{}, {} seeds each, filled in layers of {:g} m at solid fraction {:g}, {:g} s each\n"
       "under gravity {:g} m/s2 with the friction below; then {:g} s and until it rests with the scene's own\n"
@@ -54,7 +54,7 @@ report::LimitsReport limits(const comm::Comm& comm, const std::string& path, con
   const input::Input in = with_target(comm, path, overrides);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);
-  const run::Sample sample = run::sample_of(scene);
+  const control::Sample sample = control::sample_of(scene);
   const run::Extremes found = run::find_extremes(comm, scene);
   return {.scene_file = path,
           .seeds = found.seeds,

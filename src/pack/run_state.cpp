@@ -50,7 +50,8 @@ void each_field(Mark& mark, Visit visit) {
 template <class F, class Visit>
 requires std::is_same_v<std::remove_const_t<F>, control::Filling>
 void each_field(F& filling, Visit visit) {
-  auto& [on, target, knob, bias, knobs, filled, relaxed, layer_knobs, layer_surfaces, layer_fractions] = filling;
+  auto& [on, target, knob, bias, knobs, filled, relaxed, slab_excess, layer_knobs, layer_surfaces, layer_fractions] =
+      filling;
   visit("on", on);
   visit("target", target);
   visit("knob", knob);
@@ -58,6 +59,7 @@ void each_field(F& filling, Visit visit) {
   visit("knobs", knobs);
   visit("filled", filled);
   visit("relaxed", relaxed);
+  visit("slab_excess", slab_excess);
   visit("layer_knobs", layer_knobs);
   visit("layer_surfaces", layer_surfaces);
   visit("layer_fractions", layer_fractions);

@@ -5,11 +5,11 @@
 
 #include "base/timer.hpp"
 #include "control/filling.hpp"
+#include "control/sample.hpp"
 #include "observe/measure.hpp"
 #include "report/judge.hpp"
 #include "rsa/insert.hpp"
 #include "rsa/mixing.hpp"
-#include "run/sample.hpp"
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
@@ -82,7 +82,7 @@ void measure_filling(Bed& bed, Attendant& attendant) {
   const double surface = bed.surface();
   const control::Slab slab = control::buried(surface, 2.0 * bed.scene.sizes.mean());
   control::correct(bed.progress.filling, surface, slab, slab.depth() > 0.0 ? bed.fraction_of(slab) : 0.0,
-                   squeeze_of(bed.scene, surface, slab));
+                   control::squeeze_of(bed.scene, surface, slab));
   attendant.layer_measured(bed.progress.filling);
 }
 

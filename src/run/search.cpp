@@ -10,39 +10,49 @@
 
 #include "base/log.hpp"
 #include "base/voids.hpp"
+#include "scene/limits.hpp"
 
 namespace packmpi::run {
 namespace {
 
 using control::Knob;
+using control::Sample;
 using control::Trial;
 
-constexpr int intervals = 4;                   // of friction, and half as many of rolling
-constexpr int more_whole = 5, more_small = 2;  // trials after those, nearer to the target
+constexpr int intervals = 4;                    // of friction, and half as many of rolling
+constexpr int more_whole = 10, more_small = 2;  // trials after those, nearer to the target
 constexpr double same_knob = 1e-3, aside = 0.01;
 
 // Trials i of `count`, shared among the ranks.
 template <class Try>
-std::vector<Trial> share(const comm::Comm& comm, std::size_t count, Try&& attempt) {
-  constexpr std::size_t width = 4;
-  std::vector<double> numbers(count * width, -std::numeric_limits<double>::infinity());
+std::vector<Trial> share(const comm::Comm& comm, std::size_t count, std::size_t most_layers, Try&& attempt) {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  constexpr std::size_t scalars = 4;
+  const std::size_t width = scalars + most_layers;
+  std::vector<double> numbers(count * width, none);
   comm::agree_on(comm, [&] {
     for (auto k = static_cast<std::size_t>(comm.rank()); k < count; k += static_cast<std::size_t>(comm.size())) {
       const Trial trial = attempt(k);
-      const std::array<double, width> mine{trial.knob, trial.filled, trial.relaxed, trial.coordination};
-      std::ranges::copy(mine, numbers.begin() + static_cast<std::ptrdiff_t>(k * width));
+      const std::array<double, scalars> mine{trial.knob, trial.filled, trial.relaxed, trial.coordination};
+      const auto into = std::ranges::copy(mine, numbers.begin() + static_cast<std::ptrdiff_t>(k * width)).out;
+      std::ranges::copy(trial.slabs, into);
     }
   });
   comm.max(std::span(numbers));
   std::vector<Trial> trials;
   for (std::size_t k = 0; k < numbers.size(); k += width) {
     trials.push_back({numbers[k], numbers[k + 1], numbers[k + 2], numbers[k + 3]});
+    for (std::size_t n = scalars; n < width && numbers[k + n] > none; ++n)
+      trials.back().slabs.push_back(numbers[k + n]);
   }
   return trials;
 }
 
+std::size_t most_layers_of(const Sample& sample) { return static_cast<std::size_t>(scene::most_layers(sample.scene)); }
+
 std::vector<Trial> try_knobs(const comm::Comm& comm, const Sample& sample, const std::vector<Knob>& knobs) {
-  std::vector<Trial> trials = share(comm, knobs.size(), [&](std::size_t k) { return try_knob(sample, knobs[k]); });
+  std::vector<Trial> trials =
+      share(comm, knobs.size(), most_layers_of(sample), [&](std::size_t k) { return try_knob(sample, knobs[k]); });
   for (const Trial& trial : trials) {
     const scene::Friction friction = control::friction_of(sample.scene.in, trial.knob);
     log::info(fmt::format(
@@ -134,11 +144,12 @@ Extremes find_extremes(const comm::Comm& comm, const scene::Scene& scene) {
     input::Input in = scene.in;
     in.seed += static_cast<std::uint64_t>(k);
     found.seeds.push_back(in.seed);
-    samples.push_back(sample_of(scene::build(in)));
+    samples.push_back(control::sample_of(scene::build(in)));
   }
   const Knob loosest = control::loosest_knob(scene.in);
-  const std::vector<Trial> trials = share(
-      comm, 2 * samples.size(), [&](std::size_t k) { return try_knob(samples[k / 2], k % 2 == 0 ? 0.0 : loosest); });
+  const std::vector<Trial> trials =
+      share(comm, 2 * samples.size(), most_layers_of(samples.front()),
+            [&](std::size_t k) { return try_knob(samples[k / 2], k % 2 == 0 ? 0.0 : loosest); });
   for (std::size_t k = 0; k < trials.size(); ++k) (k % 2 == 0 ? found.densest : found.loosest).push_back(trials[k]);
   return found;
 }
@@ -147,7 +158,7 @@ control::Filling find_filling(const comm::Comm& comm, const scene::Scene& scene)
   const input::Target& target = *scene.in.target;
   const control::Limits limits = target.relative_density ? find_extremes(comm, scene).limits() : control::Limits{};
   const double wanted = control::fraction_wanted(target, limits);
-  const Sample sample = sample_of(scene);
+  const Sample sample = control::sample_of(scene);
   log::info(fmt::format("target: {}; {} tells what friction gives it, of about {:.0f} particles", density_words(wanted),
                         sample.whole ? "the scene itself" : "a sample", sample.particles));
   std::vector<Trial> trials = try_knobs(comm, sample, first_knobs(scene.in));
@@ -162,7 +173,8 @@ control::Filling find_filling(const comm::Comm& comm, const scene::Scene& scene)
   if (!sample.whole) filling = control::curve_of(trials);
   filling.on = true;
   filling.target = wanted;
-  filling.knob = sample.whole ? best_of(trials, wanted).knob : control::next_knob(filling, squeeze_of(scene, 0.0, {}));
+  filling.knob =
+      sample.whole ? best_of(trials, wanted).knob : control::next_knob(filling, control::squeeze_of(scene, 0.0, {}));
   return filling;
 }
 

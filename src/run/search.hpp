@@ -6,12 +6,12 @@
 
 #include "comm/comm.hpp"
 #include "control/filling.hpp"
-#include "run/sample.hpp"
+#include "run/trial.hpp"
 
 namespace packmpi::run {
 
 /// Samples that a search fills in at most.
-[[nodiscard]] std::int64_t most_trials(const Sample& sample);
+[[nodiscard]] std::int64_t most_trials(const control::Sample& sample);
 
 /// The densest and the loosest state of a scene, the mean over seeds: the scene's own and those after it.
 struct Extremes {

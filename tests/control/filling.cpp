@@ -152,6 +152,27 @@ TEST(Filling, WhatWeightWillAddIsForeseen) {
   EXPECT_NEAR(filling.knob, alone, 1e-12);
 }
 
+// A slab near the floor is looser in the sample, too: that is no difference of the bed.
+TEST(Filling, ASlabIsHeldAgainstThoseOfTheSample) {
+  std::vector<Trial> some = trials;
+  for (Trial& trial : some) trial.slabs = {0.0, 0.0, trial.filled - 0.004, trial.filled - 0.002};
+  some[1].slabs = {0.0, 0.0, trials[1].filled - 0.005};  // one of fewer layers
+  Filling filling = curve_of(some);
+  ASSERT_EQ(filling.slab_excess.size(), 4U);
+  EXPECT_EQ(filling.slab_excess[1], 0.0);
+  EXPECT_NEAR(filling.slab_excess[2], -0.0042, 1e-15);
+  EXPECT_NEAR(filling.slab_excess[3], -0.002, 1e-15);
+  filling.on = true;
+  filling.target = 0.60;
+  const Slab slab{2.0, 12.0, 1.0};
+  const double more[] = {0.0, 0.0, -0.0042, -0.002, -0.002};  // as the last one, where the sample has no more layers
+  for (int layer = 0; layer < 5; ++layer) {
+    filling.layer_knobs.push_back(0.75);
+    correct(filling, 15.0 + layer, slab, filled_at(filling, 0.75) + more[layer], {});
+    EXPECT_NEAR(filling.bias, 0.0, 1e-15) << layer;
+  }
+}
+
 TEST(Filling, LayersCorrectWhatTheSampleDoesNotKnow) {
   for (const double more : {-0.008, 0.0, 0.004, 0.008}) EXPECT_NEAR(filled_in(more, 0.60), 0.60, 0.0012) << more;
 }

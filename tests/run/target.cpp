@@ -132,15 +132,28 @@ TEST_F(Target, UnderItsStressIsMetThereAndNotBefore) {
 // The stress presses a sample and a bed alike, so that what is left to foresee is the weight.
 TEST_F(Target, ForeseesWhatAStressAddsToTheDensity) {
   changes_ = {"container.size=[0.5, 0.5, 0.5]", "confinement.vertical=\"20 kPa\"", "rest.mean_overlap=0.05"};
-  const control::Squeeze before = squeeze_of(scene(), 0.0, {});
+  const control::Squeeze before = control::squeeze_of(scene(), 0.0, {});
   changes_.emplace_back("target.state=\"confined\"");
-  const control::Squeeze under = squeeze_of(scene(), 0.0, {});
-  EXPECT_EQ(before.ordered, before.sample);
-  EXPECT_EQ(under.sample, before.sample);
+  const control::Squeeze under = control::squeeze_of(scene(), 0.0, {});
   EXPECT_GT(under.ordered, 5.0 * before.ordered);
   // Overlaps go with (stress + weight)^(2/3): what the sample tells of both gives the bed's.
-  const double weight = std::pow(before.sample, 1.5), stress = std::pow(under.ordered, 1.5) - weight;
+  const double weight = std::pow(before.ordered, 1.5), stress = std::pow(under.ordered, 1.5) - weight;
   EXPECT_NEAR(under.next, std::pow(stress + std::pow(before.next, 1.5), 2.0 / 3.0), 1e-12);
+}
+
+// What is measured of a bed no higher than the sample is measured of the sample as deep below the surface; higher up
+// the bed presses more.
+TEST_F(Target, ASlabIsHeldAgainstTheSamplesAsDeep) {
+  changes_ = {"container.size=[0.5, 0.5, 0.5]", "container.boundary=[\"periodic\", \"periodic\"]"};
+  const scene::Scene bed = scene();
+  const double d = 2.0 * bed.sizes.mean(), height = control::sample_of(bed).scene.container.height();
+  ASSERT_LT(height, 0.45);
+  const control::Squeeze low = control::squeeze_of(bed, 0.9 * height, control::buried(0.9 * height, d));
+  EXPECT_GT(low.now, 0.0);
+  EXPECT_EQ(low.now, low.sample);
+  const control::Squeeze high = control::squeeze_of(bed, 0.45, control::buried(0.45, d));
+  EXPECT_GT(high.now, high.sample);
+  EXPECT_EQ(high.sample, control::squeeze_of(bed, height, control::buried(height, d)).sample);
 }
 
 TEST_F(Target, WhatCannotBeIsRefusedWithBothLimitsBeforeAnythingIsWritten) {
@@ -171,7 +184,7 @@ TEST_F(Target, MissedIsSaidByName) {
 
 TEST_F(Target, SamplesOfLargeScenesAreSmallAndLoseTheirWalls) {
   changes_ = {"container.size=[1.0, 0.16, 1.0]", "container.boundary=[\"wall\", \"wall\"]"};
-  const Sample sample = sample_of(scene());
+  const control::Sample sample = control::sample_of(scene());
   EXPECT_FALSE(sample.whole);
   EXPECT_EQ(sample.scene.in.container.size[1], 0.16);
   EXPECT_EQ(sample.scene.in.container.boundary[1], input::Boundary::wall);
@@ -188,7 +201,7 @@ TEST_F(Target, ASampleOfAListHasItsSizesAsOftenAndAHeightOfItsOwn) {
   for (int k = 0; k < 60000; ++k) in.particles.radius.radii.push_back(k % 3 == 0 ? 0.012 : 0.009);
   in.particles.count = 60000;
   const scene::Scene whole = scene::build(in);
-  const Sample sample = sample_of(whole);
+  const control::Sample sample = control::sample_of(whole);
   EXPECT_FALSE(sample.whole);
   EXPECT_EQ(sample.scene.in.particles.count, 0);
   EXPECT_NEAR(sample.scene.sizes.mean(), 0.01, 1e-12);

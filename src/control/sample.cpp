@@ -1,17 +1,13 @@
-#include "run/sample.hpp"
+#include "control/sample.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elementary.hpp"
 #include "geometry/volume.hpp"
-#include "observe/measure.hpp"
-#include "run/bed.hpp"
-#include "run/confine.hpp"
-#include "run/fill.hpp"
 #include "scene/expectation.hpp"
 
-namespace packmpi::run {
+namespace packmpi::control {
 namespace {
 
 constexpr double few = 4000.0;               // particles: a scene of no more is its own sample
@@ -82,35 +78,17 @@ double wall_scale(scene::Scene scene, const scene::Scene& sample) {
   return scene::expected_fraction(scene).value / scene::expected_fraction(sample).value;
 }
 
-// Is the density that is ordered one under stress?
-bool is_confined(const scene::Scene& scene) {
-  return scene.in.confinement && scene.in.target && scene.in.target->state == input::TargetState::confined;
-}
-
 // [m] of bed above that presses like the stress.
 double pressing_of_stress(const scene::Scene& scene) {
   const double weight = scene.in.particles.density * scene.in.jamming.gravity * scene::expected_fraction(scene).value;
   return scene::mean_stress(*scene.in.confinement) / weight;
 }
 
-// Looks at the bulk when the final stage begins.
-class Onlooker final : public Attendant {
- public:
-  explicit Onlooker(const Bed& bed) : bed_(bed) {}
-  void relaxation_started() override {  // again when a lid comes
-    if (filled_ == 0.0) filled_ = solid_fraction();
-  }
-  [[nodiscard]] double filled() const noexcept { return filled_; }
-  [[nodiscard]] double solid_fraction() const {
-    return observe::density(bed_.comm, bed_.store, bed_.scene, bed_.bulk()).phi_bulk;
-  }
-
- private:
-  const Bed& bed_;
-  double filled_ = 0.0;
-};
-
 }  // namespace
+
+bool confined_density(const scene::Scene& scene) {
+  return scene.in.confinement && scene.in.target && scene.in.target->state == input::TargetState::confined;
+}
 
 Sample sample_of(const scene::Scene& scene) {
   const double particles = particles_in(scene);
@@ -121,36 +99,20 @@ Sample sample_of(const scene::Scene& scene) {
   return sample;
 }
 
-control::Squeeze squeeze_of(const scene::Scene& scene, double surface, const control::Slab& slab) {
+Squeeze squeeze_of(const scene::Scene& scene, double surface, const Slab& slab) {
   // Particles nearer by half an overlap each: a strain along each axis.
   const double axes = scene.container.dimension;
   const double per_overlap = 0.5 * axes * scene::expected_fraction(scene).value;
-  const double under = is_confined(scene) ? pressing_of_stress(scene) : 0.0;
+  const double under = confined_density(scene) ? pressing_of_stress(scene) : 0.0;
   const auto gain = [&](double pressing) {
     return per_overlap * scene::overlap_below(scene, std::max(pressing, 0.0), scene.in.particles.youngs_modulus);
   };
   const double sample = sample_height(scene, mean_diameter(scene));  // without walls
-  return {.sample = gain(0.5 * sample),
+  const Slab same = surface > sample ? buried(sample, 2.0 * scene.sizes.mean()) : slab;
+  return {.sample = gain(std::min(surface, sample) - 0.5 * (same.low + same.high)),
           .ordered = gain(under + 0.5 * sample),
           .now = gain(scene::pressing_depth(scene, surface - 0.5 * (slab.low + slab.high))),
           .next = gain(under + scene::pressing_depth(scene, scene::finished_height(scene) - surface))};
 }
 
-control::Trial try_knob(const Sample& sample, control::Knob knob) {
-  const comm::Comm alone(MPI_COMM_SELF);
-  scene::Scene scene = sample.scene;  // a lid changes its container
-  Bed bed(alone, scene);
-  bed.box = &scene.container;
-  bed.progress.filling.on = true;
-  bed.progress.filling.knob = knob;
-  Onlooker onlooker(bed);
-  fill(bed, onlooker);
-  if (is_confined(scene)) confine_bed(bed, onlooker);
-  const double relaxed = onlooker.solid_fraction();
-  const double filled = onlooker.filled() > 0.0 ? onlooker.filled() : relaxed;
-  const observe::Contacts contacts =
-      observe::contacts(alone, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
-  return {knob, sample.scale * filled, sample.scale * relaxed, contacts.coordination};
-}
-
-}  // namespace packmpi::run
+}  // namespace packmpi::control

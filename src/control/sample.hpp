@@ -1,11 +1,9 @@
-/// A small piece of a scene, filled in with a given friction: what density comes of it.
+/// A small piece of a scene, on which a density is looked for. A scene alone; run/trial.hpp fills one in.
 #pragma once
-#include <cstdint>
-
 #include "control/filling.hpp"
 #include "scene/scene.hpp"
 
-namespace packmpi::run {
+namespace packmpi::control {
 
 /// The same particles and protocol on a smaller floor and to a lower height; or the scene itself, if that is small.
 struct Sample {
@@ -21,10 +19,9 @@ struct Sample {
 /// What the weight above, and a stress that is ordered with the density, will squeeze a layer by that is filled in on a
 /// bed with this `surface` [m] (0: the first one), and what it squeezes the `slab` of it that is measured and the
 /// sample by. Local, pure; same bits on any machine.
-[[nodiscard]] control::Squeeze squeeze_of(const scene::Scene& scene, double surface, const control::Slab& slab);
+[[nodiscard]] Squeeze squeeze_of(const scene::Scene& scene, double surface, const Slab& slab);
 
-/// Fills the sample in with one knob, and confines it if the target's density holds then, on this rank alone. Local: no
-/// rank waits for another. Throws Error(numerical_failure) as a run would.
-[[nodiscard]] control::Trial try_knob(const Sample& sample, control::Knob knob);
+/// Is the density that is ordered one under stress? Local, pure.
+[[nodiscard]] bool confined_density(const scene::Scene& scene);
 
-}  // namespace packmpi::run
+}  // namespace packmpi::control
