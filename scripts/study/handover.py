@@ -30,14 +30,17 @@ SCENES = {
                               "dynamics.time_step": "1e-5"}),
     "graded": ("paper_5_4", {"container.size": "[0.4,0.4,0.4]", "container.boundary": '["periodic","periodic"]', "fidelity": "balanced"}),
 }
-SCENES["confined"] = ("confined", {"container.size": "[0.08,0.08,0.08]", "confinement": '{vertical="100 kPa"}'})
+SCENES["confined"] = ("confined", {"container.size": "[0.08,0.08,0.08]"})
+SCENES["cylinder"] = ("pebbles", {"container.height": "0.6"})
+SPRINGS = {"output.contacts": "true"}   # convert carries them over
 # To be handed over: nothing moves any more.
 HANDED = {"rest.kinetic_energy": "1e-10", "rest.unbalanced_force": "1e-4"}
 CODES = ("lammps", "liggghts", "yade")
 COLUMNS = ["scene", "rest", "code", "spheres", "steps", "phi_bulk", "sinking", "largest_displacement", "mean_displacement", "kinetic_first", "kinetic_peak", "kinetic_last",
            "coordination_before", "coordination_after"]
 # Appended to convert's scripts: what the spheres are at the end.
-DUMP = "\nwrite_dump all custom out.dump id x y z radius modify sort id\n"
+DUMP = "\nwrite_dump all custom out.dump id x y z radius modify sort id format {}\n"
+DIGITS = {"lammps": "float %.17g", "liggghts": '"%d %.17g %.17g %.17g %.17g"'}
 YADE_END = """
 energies = [utils.kineticEnergy()]
 for k in range(100):
@@ -55,7 +58,7 @@ def by_lammps(code, folder, script, steps):
     text = script.read_text()
     text = re.sub(r"(?m)^thermo  .*$", f"thermo {max(1, steps // 100)}", text)
     own = folder / f"run.{code}.in"
-    own.write_text(text + DUMP)
+    own.write_text(text + DUMP.format(DIGITS[code]))
     program = {"lammps": "lmp", "liggghts": "liggghts"}[code]
     said, _ = run([program, "-in", own.name, "-var", "steps", steps, "-log", f"{code}.log"], folder, folder / f"{code}.said")
     energies = []
@@ -76,7 +79,7 @@ def by_yade(folder, script, steps):
 
 def received(code, folder, path, steps):
     pack = Pack(path)
-    periodic = [end == "periodic" for end in pack.scene()["container"]["boundary"]]
+    periodic = [end == "periodic" for end in pack.scene()["container"].get("boundary", ["wall", "wall"])]
     script = path.with_suffix({"lammps": ".lammps.in", "liggghts": ".liggghts.in", "yade": ".yade.py"}[code])
     position, energies = by_yade(folder, script, steps) if code == "yade" else by_lammps(code, folder, script, steps)
     moved = position - pack.position
@@ -96,6 +99,7 @@ def measure(options, name, rest):
     file, changes = SCENES[name]
     if rest == "handed":
         changes = {**changes, **HANDED}
+    changes = {**changes, **SPRINGS}
     folder = options.results / f"{name}_{rest}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

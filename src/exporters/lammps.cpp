@@ -164,7 +164,7 @@ std::string in_file(const Specimen& s) {
       "{5}{1}{2}{7}{6}run             ${{steps}}\n{0}",
       report, s.scene.features.mixture ? lammps_walls(s) : walls(s),
       s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
-      hold(s), begin_to_move(s, "set             group all omega 0 0 0\n"));
+      hold(s), begin_to_move(s, s.step(), "set             group all omega 0 0 0\n"));
   return text;
 }
 

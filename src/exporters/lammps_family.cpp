@@ -51,9 +51,9 @@ Section velocities(const Specimen& s) {
           }};
 }
 
-std::string begin_to_move(const Specimen& s, const char* stand) {
+std::string begin_to_move(const Specimen& s, double step, const char* stand) {
   const std::string move =
-      fmt::format("fix             move all {}\ntimestep        {}\n", s.rotation ? "nve/sphere" : "nve", s.step());
+      fmt::format("fix             move all {}\ntimestep        {}\n", s.rotation ? "nve/sphere" : "nve", step);
   if (s.springs.of.empty()) {
     return (remembers(s) ? "# not carried over: springs of friction; they come back while the pack settles\n" : "") +
            move;

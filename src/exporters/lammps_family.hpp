@@ -16,8 +16,8 @@ void atom_row(Text& out, const Outgoing& particle, double density);
 /// The second section of a data file: "id vx vy vz wx wy wz"; with springs those that make them.
 [[nodiscard]] Section velocities(const Specimen& specimen);
 /// The integrator, time step and, with springs, before them the step that makes them, for which nothing moves.
-/// `stand`: the command that ends all spins.
-[[nodiscard]] std::string begin_to_move(const Specimen& specimen, const char* stand);
+/// `step` [s]; `stand`: the command that ends all spins.
+[[nodiscard]] std::string begin_to_move(const Specimen& specimen, double step, const char* stand);
 
 /// " p f f": what the command boundary wants.
 [[nodiscard]] std::string boundary_words(const Specimen& specimen);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -38,6 +39,15 @@ double shear_modulus(const Specimen& specimen) {
 }
 
 bool remembers(const Specimen& specimen) { return specimen.scene.in.contact.tangential == input::Tangential::mindlin; }
+
+double step_of_stronger_dashpot(const Specimen& specimen) {
+  const input::Input& in = specimen.scene.in;
+  double ratio = in.contact.damping_ratio;
+  for (const input::Component& of : in.components) ratio = std::max(ratio, of.damping_ratio);
+  const auto limit = [](double zeta) { return std::sqrt(zeta * zeta + 1.0) - zeta; };
+  const bool turns = remembers(specimen) && specimen.rotation;
+  return specimen.step() * (turns ? limit(std::sqrt(3.5) * ratio) / limit(ratio) : 1.0);
+}
 
 std::vector<std::string> left_out(const Specimen& specimen, Fluid fluid, Rolling rolling) {
   const input::Input& in = specimen.scene.in;

@@ -20,6 +20,10 @@ namespace packmpi::exporters {
 [[nodiscard]] double shear_modulus(const Specimen& specimen);
 
 /// Has the scene friction with memory (contact.tangential = "mindlin")?
+/// [s] for codes whose dashpot against slip is that of the reduced mass, where the scene's is that of the mass that
+/// slips, 2/7 of it: less than the scene's by as much as the limit of an explicit step falls (doc/theory.md, "Time
+/// step").
+[[nodiscard]] double step_of_stronger_dashpot(const Specimen& specimen);
 [[nodiscard]] bool remembers(const Specimen& specimen);
 
 /// What the receiving code's input keeps of the scene's drag: all, all but a fluid that moves, nothing.

@@ -119,7 +119,7 @@ std::string in_file(const Specimen& s) {
       "thermo_style    custom step atoms ke c_volume c_strongest\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
       "run             0\n{0}{1}run             ${{steps}}\n{0}",
-      report, begin_to_move(s, "set             group all omegax 0 omegay 0 omegaz 0\n"));
+      report, begin_to_move(s, step_of_stronger_dashpot(s), "set             group all omegax 0 omegay 0 omegaz 0\n"));
   return text;
 }
 

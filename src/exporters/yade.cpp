@@ -118,7 +118,8 @@ std::string springs(const Specimen& s) {
 /// In which contacts are found; with springs so short that nothing moves without them.
 std::string first_step(const Specimen& s) {
   return s.touching.empty() ? "O.run(1, True)\n"
-                            : fmt::format("O.dt = {:g}\nO.run(1, True)\nO.dt = {}\n", 1e-6 * s.step(), s.step());
+                            : fmt::format("O.dt = {:g}\nO.run(1, True)\nO.dt = {}\n",
+                                          1e-6 * step_of_stronger_dashpot(s), step_of_stronger_dashpot(s));
 }
 
 /// After it.
@@ -195,7 +196,7 @@ std::string script(const Specimen& s) {
       "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
       "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
       mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", in.contact.damping_ratio),
-      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), s.step(),
+      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), step_of_stronger_dashpot(s),
       s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "");
   return text + report + first_step(s) + "report()\n" + stretch(s) + "O.run(steps, True)\nreport()\n";
 }

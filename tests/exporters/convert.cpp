@@ -533,6 +533,19 @@ TEST_F(Convert, WhatCannotBeReadOrWrittenLeavesNothingBehind) {
   EXPECT_EQ(files_in(folder_.path()), 3u);
 }
 
+// A dashpot of m* where the scene's is of 2/7 m*: the limit of an explicit step falls to (sqrt(z^2 + 1) - z) of both.
+TEST(Law, AStrongerDashpotHasASmallerStep) {
+  const auto step_of = [](std::vector<std::string> set) {
+    set.emplace_back("contact.damping_ratio=0.3");
+    Specimen specimen;
+    specimen.scene = scene::build(input::parse(scene_text(3, both_periodic), "scene", {set}));
+    return step_of_stronger_dashpot(specimen) / specimen.scene.time_step;
+  };
+  const std::string memory = "contact.tangential=\"mindlin\"";
+  EXPECT_NEAR(step_of({memory}), (std::sqrt(1.315) - std::sqrt(0.315)) / (std::sqrt(1.09) - 0.3), 1e-12);
+  EXPECT_EQ(step_of({}), 1.0);
+}
+
 TEST(Law, RestitutionIsThatOfTheDampingRatio) {
   EXPECT_NEAR(tsuji_restitution(0.1), 0.6103979305532861, 1e-12);
   EXPECT_NEAR(restitution(0.1), 0.7073512849095, 1e-12);
