@@ -39,6 +39,13 @@ void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {
   constexpr double many = 1e6, most = 0.5;
   const auto fines = scene::fines(scene);
   if (!fines || fines->particles < many || fines->share < most) return;
+  if (scene.features.mixture) {
+    warnings.push_back(
+        fmt::format("component.radius: {}; keep_percent = [5, 100] of the component that has them leaves "
+                    "most of them out",
+                    fines_words(*fines)));
+    return;
+  }
   const auto& [from, to] = scene.in.particles.radius.keep_percent;
   warnings.push_back(
       fmt::format("particles.radius: {}; keep_percent = [{:g}, {:g}] leaves them out, and about {:.2g} particles "

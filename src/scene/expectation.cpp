@@ -147,7 +147,10 @@ double deviation_of_count(const Scene& scene, double particles) {
 std::optional<Fines> fines(const Scene& scene) {
   constexpr double finest = 0.05;
   const input::Radius& radius = scene.in.particles.radius;
-  if (radius.distribution != input::SizeDistribution::grading || radius.weighting != input::Weighting::mass) return {};
+  const auto graded = [](const input::Radius& of) {
+    return of.distribution == input::SizeDistribution::grading && of.weighting == input::Weighting::mass;
+  };
+  if (!graded(radius) && std::ranges::none_of(radius.parts, graded)) return {};
   Fines found;
   const double r = scene.sizes.curve().quantile(input::Weighting::mass, finest);
   found.diameter = 2.0 * r;

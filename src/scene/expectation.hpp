@@ -31,7 +31,7 @@ struct Fines {
   double particles = 0.0;  ///< of the scene, in all
   double without = 0.0;    ///< of the scene without them, at the same solid volume
 };
-/// None: the sizes are not a grading curve by mass. Local, pure.
+/// None: the sizes are not a grading curve by mass, nor those of a component. Local, pure.
 [[nodiscard]] std::optional<Fines> fines(const Scene& scene);
 
 /// Height [m] by which a layer raises a bed of this solid fraction.

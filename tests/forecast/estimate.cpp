@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "disk/sealed_file.hpp"
+#include "forecast/advice.hpp"
 #include "input/read.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
@@ -248,6 +250,37 @@ TEST_F(Estimates, TheFractionIsThatOfKnownPacks) {
   EXPECT_NEAR(fraction(without), 8964 * volume / 0.5186, 0.004);
   EXPECT_EQ(of(without_probe({.fraction = 0.5})).fraction, 0.5);
   EXPECT_EQ(of(without_probe({.fraction = 0.5})).fraction_error, 0.0);
+}
+
+// A soil of equal masses in equal ratios of size: of diameters there are as many as d^-4 says.
+TEST(Fines, AreToldByNumberAndMayBeLeftOut) {
+  const double finest = 0.075e-3, coarsest = 12.5e-3;
+  std::string text = brick;
+  text.replace(text.find("radius = "), std::string("radius = { distribution = \"equal\", value = 0.02 }").size(),
+               "diameter = { distribution = \"grading\", weighting = \"mass\", diameter_curve = [[\"0.075 mm\", 0], "
+               "[\"12.5 mm\", 100]] }");
+  const scene::Scene soil = scene::build(input::parse(text, "soil.toml", {}));
+  const auto found = scene::fines(soil);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->diameter, finest * std::pow(coarsest / finest, 0.05), 1e-6 * finest);
+  const double all = std::pow(finest, -3.0) - std::pow(coarsest, -3.0);
+  EXPECT_NEAR(found->share, (std::pow(finest, -3.0) - std::pow(found->diameter, -3.0)) / all, 1e-3);
+  const double mean_volume = std::numbers::pi / 6.0 * 3.0 * std::log(coarsest / finest) / all;
+  const double solid = scene::expected_fraction(soil).value * soil.container.mean_area() *
+                       scene::expected_filling(soil, scene::expected_fraction(soil).value).height;
+  EXPECT_NEAR(found->particles * mean_volume / solid, 1.0, 0.01);
+  EXPECT_NEAR(found->without, found->particles * (1.0 - found->share) / 0.95, 1e-6 * found->particles);
+  EXPECT_THAT(warnings_of(soil), ::testing::Contains(HasSubstr("keep_percent = [5, 100] leaves them out")));
+  EXPECT_FALSE(scene::fines(scene::build(input::parse(brick, "brick.toml", {}))));
+  text +=
+      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"soil\"\nshare = 1\n[[component]]\nname = "
+      "\"stones\"\nshare = 1\n"
+      "radius = { distribution = \"equal\", value = 0.006 }\n";
+  const scene::Scene both = scene::build(input::parse(text, "both.toml", {}));
+  EXPECT_NEAR(scene::fines(both)->diameter, finest * std::pow(coarsest / finest, 0.1), 1e-3 * finest)
+      << "of half the mass";
+  EXPECT_THAT(warnings_of(both),
+              ::testing::Contains(HasSubstr("keep_percent = [5, 100] of the component that has them")));
 }
 
 TEST_F(Estimates, RanksShareTheMemory) {
