@@ -31,7 +31,7 @@ PACKMPI_INLINE void put_feature(const StepData& data, Block<F>& b, int p, std::i
   if constexpr (F.dimension == 3) {
     const mesh::Table table = data.mesh;
     const std::int32_t* at = data.near_begin + entry;
-    const mesh::Touch touch = mesh::touch(table, feature, data.near, at[0], at[1], x);
+    const mesh::Touch touch = mesh::touch(table, feature, data.near, at[0], at[1], x, x[F.layout().radius]);
     b.in[0][p] = touch.normal[0];
     b.in[1][p] = touch.normal[1];
     b.in[2][p] = touch.normal[2];

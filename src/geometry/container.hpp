@@ -225,7 +225,7 @@ struct Container {
   }
   /// Is the point inside the side walls of a round vessel and at least `margin` [m] away from them? In a box: yes.
   [[nodiscard]] bool holds(const Vec3& x, double margin) const {
-    if (is_mesh()) return margin > 0.0 ? room->distance(x, margin) >= margin : room->beyond(x) <= 0.0;
+    if (is_mesh()) return margin > 0.0 ? room->fits(x, margin) : room->beyond(x) <= 0.0;
     return is_box() || from_sides(x) >= margin;
   }
 

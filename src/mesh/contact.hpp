@@ -42,12 +42,13 @@ PACKMPI_CONTACT bool stands_on(const Table& table, const std::int32_t* near, std
   return false;
 }
 
-/// A face: of its triangles those that the sphere may be above have to be in `near`.
+/// A face: of its triangles those that the sphere may be above have to be in `near`. Where it is `reach` [m] away or
+/// more they are not looked at.
 PACKMPI_CONTACT Touch touch_face(const Table& table, std::int32_t face, const std::int32_t* near, std::int32_t begin,
-                                 std::int32_t end, const double* x) {
+                                 std::int32_t end, const double* x, double reach) {
   const double* plane = table.faces + 4 * std::int64_t{face};
   const double distance = plane[3] - along(plane, x);
-  const bool on = distance > -table.behind && stands_on(table, near, begin, end, x);
+  const bool on = distance > -table.behind && distance < reach && stands_on(table, near, begin, end, x);
   return {{plane[0], plane[1], plane[2]}, on ? distance : far_away};
 }
 
@@ -80,10 +81,10 @@ PACKMPI_CONTACT Touch touch_corner(const Table& table, std::int32_t corner, cons
   return touch_place(table.corners + 3 * std::int64_t{corner}, x, on);
 }
 
-/// Any feature; `near` is of faces only.
+/// Any feature; `near` is of faces only. What is `reach` [m] away or more may be far_away instead.
 PACKMPI_CONTACT Touch touch(const Table& table, std::int32_t feature, const std::int32_t* near, std::int32_t begin,
-                            std::int32_t end, const double* x) {
-  if (feature < table.edge_begin) return touch_face(table, feature, near, begin, end, x);
+                            std::int32_t end, const double* x, double reach) {
+  if (feature < table.edge_begin) return touch_face(table, feature, near, begin, end, x, reach);
   if (feature < table.corner_begin) return touch_edge(table, feature - table.edge_begin, x);
   return touch_corner(table, feature - table.corner_begin, x);
 }

@@ -16,18 +16,25 @@ class Grid {
   /// Triangles of the cells that meet the box from `low` to `high`, each once, in ascending order: all that reach into
   /// it, and others.
   void in_box(const Vec3& low, const Vec3& high, std::vector<int>& found) const;
-  /// The same, calling see(triangle), for some more than once.
+  /// The same, for some more than once, calling see(triangle) until that says true: is there such a one?
   template <class See>
-  void each_in_box(const Vec3& low, const Vec3& high, See&& see) const {
+  [[nodiscard]] bool any_in_box(const Vec3& low, const Vec3& high, See&& see) const {
     std::array<std::int64_t, 3> from{}, to{};
     for (std::size_t a = 0; a < 3; ++a) from[a] = step(low[a], a), to[a] = step(high[a], a);
     for (std::int64_t z = from[2]; z <= to[2]; ++z) {
       for (std::int64_t y = from[1]; y <= to[1]; ++y) {
         const std::int64_t row = join({0, y, z});
         const auto end = start_[static_cast<std::size_t>(row + to[0]) + 1];
-        for (auto k = start_[static_cast<std::size_t>(row + from[0])]; k < end; ++k) see(entries_[k]);
+        for (auto k = start_[static_cast<std::size_t>(row + from[0])]; k < end; ++k) {
+          if (see(entries_[k])) return true;
+        }
       }
     }
+    return false;
+  }
+  template <class See>
+  void each_in_box(const Vec3& low, const Vec3& high, See&& see) const {
+    (void)any_in_box(low, high, [&](int triangle) { return see(triangle), false; });
   }
   /// Calls see(first, last) for each cell with its triangles.
   template <class See>

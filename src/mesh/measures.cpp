@@ -126,7 +126,7 @@ double Surface::room_between(double margin, double low, double high) const {
     const std::array<int, 3> at{k % side, k / side % side, k / (side * side)};
     const auto place = [&](std::size_t a, double from) { return from + (at[a] + 0.5) / side * size[a]; };
     const Vec3 x{place(0, shell_.low[0]), place(1, shell_.low[1]), place(2, low)};
-    inside += static_cast<int>(distance(x, margin) >= margin);
+    inside += static_cast<int>(fits(x, margin));
   }
   return std::min(exact, static_cast<double>(inside) / (side * side * side) * size[0] * size[1] * size[2]);
 }
@@ -150,7 +150,7 @@ bool Surface::meets_box(const Vec3& low, const Vec3& high) const {
 double Surface::walls_below(double height) const {
   double area = 0.0;
   for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
-    if (std::abs(face_[t][2]) > 0.999) continue;
+    if (std::abs(spot_[t].normal[2]) > 0.999) continue;
     const Corners c = shell_.corners(t);
     const std::vector<Vec3> part = clipped({c[0], c[1], c[2]}, 2, height);
     for (std::size_t k = 1; k + 1 < part.size(); ++k) {
@@ -192,7 +192,7 @@ double Surface::volume_of_sphere(const Vec3& x, double r) const {
   double sum = inside ? whole : 0.0;
   for (const int t : near) {
     const Corners c = shell_.corners(static_cast<std::size_t>(t));
-    const Vec3& n = face_[static_cast<std::size_t>(t)];
+    const Vec3& n = spot_[static_cast<std::size_t>(t)].normal;
     const double height = dot(n, minus(c[0], centre));
     if (!(std::abs(height) < r)) continue;
     Patch patch{height, r, std::sqrt((r - height) * (r + height))};

@@ -36,15 +36,15 @@ Surface::Surface(const std::vector<Corners>& triangles, const std::string& name)
 }
 
 void Surface::weigh_points() {
-  face_.resize(shell_.triangles.size());
+  spot_.resize(shell_.triangles.size());
   point_.assign(shell_.points.size(), {});
-  for (std::size_t t = 0; t < face_.size(); ++t) {
+  for (std::size_t t = 0; t < spot_.size(); ++t) {
     const Corners c = shell_.corners(t);
-    face_[t] = unit(shell_.normal(t));
+    spot_[t] = {unit(shell_.normal(t)), c[0], std::max(norm(minus(c[1], c[0])), norm(minus(c[2], c[0])))};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 a = minus(c.at((k + 1) % 3), c.at(k)), b = minus(c.at((k + 2) % 3), c.at(k));
       Vec3& sum = point_[static_cast<std::size_t>(shell_.triangles[t].at(k))];
-      sum = plus(sum, times(angle_of(dot(a, b), norm(cross(a, b))), face_[t]));
+      sum = plus(sum, times(angle_of(dot(a, b), norm(cross(a, b))), spot_[t].normal));
     }
   }
 }
@@ -124,17 +124,24 @@ Vec3 Surface::outward(const Hit& hit) const {
   if (hit.feature < 3) {
     return point_[static_cast<std::size_t>(shell_.triangles[t].at(static_cast<std::size_t>(hit.feature)))];
   }
-  if (hit.feature == 6) return face_[t];
+  if (hit.feature == 6) return spot_[t].normal;
   const int other = shell_.neighbours[t].at(static_cast<std::size_t>(hit.feature - 3));
-  return plus(face_[t], face_[static_cast<std::size_t>(other)]);
+  return plus(spot_[t].normal, spot_[static_cast<std::size_t>(other)].normal);
 }
 
 // From the plane of a triangle, squared, a little less: no place of the triangle is nearer.
 double Surface::off_plane(const Vec3& x, int triangle) const {
-  const auto t = static_cast<std::size_t>(triangle);
-  const Vec3& corner = shell_.points[static_cast<std::size_t>(shell_.triangles[t][0])];
-  const double away = dot(face_[t], minus(x, corner));
+  const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
+  const double away = dot(spot.normal, minus(x, spot.corner));
   return (1.0 - 1e-9) * (away * away);
+}
+
+// Wrong for the sake of rounding only where the range is a millionth of the triangle.
+bool Surface::may_be_near(const Vec3& x, int triangle, double range) const {
+  const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
+  const Vec3 d = minus(x, spot.corner);
+  const double away = dot(spot.normal, d), reach = range + spot.reach;
+  return (1.0 - 1e-9) * (away * away) < range * range && (1.0 - 1e-9) * dot(d, d) < reach * reach;
 }
 
 Nearest Surface::nearest(const Vec3& x) const {
@@ -167,6 +174,19 @@ double Surface::distance(const Vec3& x, double range) const {
   return std::clamp(nearest(x).distance, -range, range);
 }
 
+bool Surface::fits(const Vec3& x, double r) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(x[a] > shell_.low[a] && x[a] < shell_.high[a])) return false;
+  }
+  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
+  if (steps < 0) return false;
+  if ((steps - 1) * grid_.width() >= r) return true;
+  const auto too_near = [&](int t) { return may_be_near(x, t, r) && std::sqrt(hit(x, t).squared) < r; };
+  if (steps == 0 && grid_.any_in_box(x, x, too_near)) return false;
+  if (grid_.any_in_box({x[0] - r, x[1] - r, x[2] - r}, {x[0] + r, x[1] + r, x[2] + r}, too_near)) return false;
+  return steps > 0 || nearest(x).distance >= r;
+}
+
 double Surface::beyond(const Vec3& x) const {
   if (!(x[0] - x[0] == 0.0 && x[1] - x[1] == 0.0 && x[2] - x[2] == 0.0)) return x[0] + x[1] + x[2];
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
@@ -184,7 +204,7 @@ Vec3 Surface::draw(const Vec3& u, double r, double low, double high) const {
   for (int k = 0; k < most; ++k) {
     Vec3 x{};
     for (std::size_t a = 0; a < 3; ++a) x[a] = from[a] + now[a] * (to[a] - from[a]);
-    if (to[2] >= from[2] && distance(x, r) >= r) return x;
+    if (to[2] >= from[2] && fits(x, r)) return x;
     for (double& one : now) one = static_cast<double>((state = stir(state)) >> 11U) * 0x1p-53;
   }
   return {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), std::nan("")};
@@ -196,11 +216,13 @@ void Surface::touches(const Vec3& x, double range, double behind,
   near(x, range, behind, close);
   const Table table = features_.table(behind);
   for (std::size_t k = 0; k < close.feature.size(); ++k) {
-    const Touch here = touch(table, close.feature[k], close.triangles.data(), close.begin(k), close.end[k], x.data());
+    const Touch here =
+        touch(table, close.feature[k], close.triangles.data(), close.begin(k), close.end[k], x.data(), far_away);
     if (here.distance < range) found(close.feature[k], here);
   }
 }
 
+// The triangle that x stands on comes first of a face's: most often it is still the one when a step asks.
 void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
   found.clear();
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
@@ -215,7 +237,7 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
     std::uint32_t& seen = found.seen[static_cast<std::size_t>(t)];
     if (seen == found.search) return;
     seen = found.search;
-    if (off_plane(x, t) < square && hit(x, t).squared < square) found.hits.push_back(t);
+    if (may_be_near(x, t, range) && hit(x, t).squared < square) found.hits.push_back(t);
   });
   std::ranges::sort(found.hits);
   for (const int t : found.hits) {
@@ -238,10 +260,13 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   std::ranges::sort(found.feature);
   found.feature.erase(std::unique(found.feature.begin(), found.feature.end()), found.feature.end());
   for (const std::int32_t feature : found.feature) {
-    if (feature < features_.edge_begin()) {
-      for (const int t : found.hits) {
-        if (features_.face_of(static_cast<std::size_t>(t)) == feature) found.triangles.push_back(t);
-      }
+    const auto begin = static_cast<std::int32_t>(found.triangles.size());
+    for (const int t : found.hits) {
+      if (feature >= features_.edge_begin() || features_.face_of(static_cast<std::size_t>(t)) != feature) continue;
+      found.triangles.push_back(t);
+      const auto last = static_cast<std::int32_t>(found.triangles.size()) - 1;
+      if (!stands_on(table, found.triangles.data(), last, last + 1, x.data())) continue;
+      std::swap(found.triangles[static_cast<std::size_t>(begin)], found.triangles.back());
     }
     found.end.push_back(static_cast<std::int32_t>(found.triangles.size()));
   }
@@ -249,7 +274,7 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
 
 Touch Surface::touch_of(std::int32_t feature, const Vec3& x, double behind) const {
   const Table table = features_.table(behind);
-  if (feature >= features_.edge_begin()) return touch(table, feature, nullptr, 0, 0, x.data());
+  if (feature >= features_.edge_begin()) return touch(table, feature, nullptr, 0, 0, x.data(), far_away);
   const double* plane = table.faces + 4 * std::int64_t{feature};
   const double height = plane[3] - along(plane, x.data()), margin = shell_.tolerance;
   std::vector<int> near;
@@ -260,7 +285,7 @@ Touch Surface::touch_of(std::int32_t feature, const Vec3& x, double behind) cons
   }
   grid_.in_box(low, high, near);
   std::erase_if(near, [&](int t) { return features_.face_of(static_cast<std::size_t>(t)) != feature; });
-  return touch(table, feature, near.data(), 0, static_cast<std::int32_t>(near.size()), x.data());
+  return touch(table, feature, near.data(), 0, static_cast<std::int32_t>(near.size()), x.data(), far_away);
 }
 
 }  // namespace packmpi::mesh

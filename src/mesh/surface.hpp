@@ -65,6 +65,10 @@ class Surface {
   /// farther.
   [[nodiscard]] double distance(const Vec3& x, double range) const;
 
+  /// Is x in the room and at least `r` [m] away from the surface, r above 0? As distance(x, r) >= r says, to the bit,
+  /// but without looking for the nearest place.
+  [[nodiscard]] bool fits(const Vec3& x, double r) const;
+
   /// How far outside the room x is [m]; inside it a negative number, not more than the distance. NaN if a coordinate
   /// is.
   [[nodiscard]] double beyond(const Vec3& x) const;
@@ -97,8 +101,14 @@ class Surface {
     Vec3 place;
     int triangle, feature;  // corner 0, 1, 2; edge 3, 4, 5; 6 its inside
   };
+  /// Of a triangle, in one line of memory, what tells that most others are not near.
+  struct alignas(64) Spot {
+    Vec3 normal, corner;
+    double reach;  // [m] from that corner to the others
+  };
   [[nodiscard]] Hit hit(const Vec3& x, int triangle) const;
   [[nodiscard]] double off_plane(const Vec3& x, int triangle) const;
+  [[nodiscard]] bool may_be_near(const Vec3& x, int triangle, double range) const;
   [[nodiscard]] Vec3 outward(const Hit& hit) const;
   void weigh_points();
   void fill_cells();
@@ -106,7 +116,8 @@ class Surface {
   Shell shell_;
   Grid grid_;
   Features features_;
-  std::vector<Vec3> face_, point_;   // normals: of triangles; of points, weighted by angles
+  std::vector<Spot> spot_;           // of triangles
+  std::vector<Vec3> point_;          // normals of points, weighted by angles
   std::vector<std::int16_t> clear_;  // of a cell: steps to one that the surface meets, negative outside the room
   double volume_ = 0.0;
   std::uint64_t digest_ = 0;

@@ -106,7 +106,9 @@ double surface_height(const comm::Comm& comm, std::span<const particles::Store* 
     std::vector<ColumnValue> weighted = tops;
     for (ColumnValue& top : weighted) top.value *= static_cast<double>(room_of(scene, columns, top.column, level));
     const auto all = static_cast<double>(std::max<std::int64_t>(1, room_of_all(comm, scene, columns, level)));
-    surface = sum(weighted) / all;
+    const double next = sum(weighted) / all;
+    if (next == surface) break;  // nothing would change any more
+    surface = next;
   }
   return surface;
 }

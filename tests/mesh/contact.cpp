@@ -48,7 +48,8 @@ std::vector<Touch> touches(const Surface& surface, const Vec3& x, double range, 
   const Table table = surface.features().table(behind);
   std::vector<Touch> found;
   for (std::size_t k = 0; k < near.feature.size(); ++k) {
-    const Touch t = touch(table, near.feature[k], near.triangles.data(), near.begin(k), near.end[k], x.data());
+    const Touch t =
+        touch(table, near.feature[k], near.triangles.data(), near.begin(k), near.end[k], x.data(), far_away);
     const Touch alone = surface.touch_of(near.feature[k], x, behind);
     if (t.distance < range) {
       EXPECT_EQ(alone.distance, t.distance);

@@ -282,6 +282,7 @@ TEST(Distance, EqualsThatOfAllTriangles) {
       EXPECT_NEAR(std::abs(expected), norm(minus(x, surface.nearest(x).place)), 1e-12);
       const double range = dice(0.0, 1.0);
       EXPECT_NEAR(surface.distance(x, range), std::clamp(expected, -range, range), 1e-12);
+      EXPECT_EQ(surface.fits(x, range), surface.distance(x, range) >= range);
     }
   }
 }
