@@ -12,9 +12,7 @@
 #include "base/elementary.hpp"
 #include "comm/petsc.hpp"
 #include "input/grading.hpp"
-#include "input/radius_range.hpp"
-#include "input/vessel.hpp"
-#include "input/words.hpp"
+#include "input/scene_case.hpp"
 #include "tables/rhythm.hpp"
 
 namespace packmpi::input {
@@ -23,60 +21,6 @@ using document::fail;
 using tables::toml_string;
 
 namespace {
-
-/// The scene under check, and a few lengths every check asks for.
-struct Case {
-  const Input& in;
-  const Document& document;
-
-  [[noreturn]] void refuse(std::string_view path, const std::string& words) const {
-    fail(document.place(path), path, words);
-  }
-  [[nodiscard]] const Radius& radius() const { return in.particles.radius; }
-  [[nodiscard]] bool equal() const { return radius().distribution == SizeDistribution::equal; }
-  [[nodiscard]] bool plane() const { return in.container.dimension == 2; }
-  [[nodiscard]] double smallest() const { return radius_range(radius()).smallest; }
-  [[nodiscard]] double largest() const { return radius_range(radius()).largest; }
-  [[nodiscard]] const char* largest_key() const {
-    switch (radius().distribution) {
-      case SizeDistribution::equal:
-        return "particles.radius.value";
-      case SizeDistribution::bidisperse:
-        return "particles.radius.large";
-      case SizeDistribution::discrete:
-      case SizeDistribution::list:
-        return "particles.radius.radii";
-      case SizeDistribution::grading:
-        return "particles.radius.diameter_curve";
-      default:
-        return "particles.radius.max";
-    }
-  }
-  [[nodiscard]] double height() const { return in.container.size.back(); }
-  /// How many particles of radius r fill the solid fraction `fraction` of a box `high` [m] on the container's floor.
-  /// A product of ratios, so that no power of a length under- or overflows on its own.
-  [[nodiscard]] double particles_in(double high, double fraction, double r) const {
-    double count = fraction * (high / r) / (plane() ? std::numbers::pi : 4.0 / 3.0 * std::numbers::pi);
-    for (int axis = 0; axis + 1 < in.container.dimension; ++axis) {
-      count *= in.container.size[static_cast<std::size_t>(axis)] / r;
-    }
-    const auto& size = in.container.size;
-    return boxed() ? count : count * (container_of(in.container).mean_area() / (size[0] * size[1]));
-  }
-  [[nodiscard]] bool is(VesselShape shape) const { return in.container.shape == shape; }
-  [[nodiscard]] bool boxed() const { return in.container.shape == VesselShape::box; }
-  /// The key of an extent of the container.
-  [[nodiscard]] std::string extent_key(std::size_t axis) const {
-    if (boxed()) return fmt::format("container.size[{}]", axis);
-    return axis + 1 == in.container.size.size() ? "container.height" : room_key();
-  }
-  [[nodiscard]] const char* room_key() const {
-    if (is(VesselShape::mesh)) return "container.file";
-    if (!is(VesselShape::frustum)) return boxed() ? "container.size" : "container.diameter";
-    return in.container.bottom_diameter < in.container.top_diameter ? "container.top_diameter"
-                                                                    : "container.bottom_diameter";
-  }
-};
 
 /// The share of a Gaussian, lognormal or Weibull distribution that falls into [min, max].
 double kept_share(const Radius& radius) {
@@ -163,69 +107,6 @@ void check_distribution(const Case& scene) {
       return check_grading(scene);
     default:
       return check_truncation(scene);
-  }
-}
-
-void check_fit(const Case& scene) {
-  const double diameter = 2.0 * scene.largest();
-  const auto& size = scene.in.container.size;
-  for (std::size_t axis = 0; axis < size.size(); ++axis) {
-    if (diameter <= size[axis]) continue;
-    scene.refuse(scene.largest_key(), fmt::format("the largest particle is {:g} m across, more than {} = {:g} m; "
-                                                  "make it smaller or the container larger",
-                                                  diameter, scene.extent_key(axis), size[axis]));
-  }
-  if (diameter > scene.in.layers.thickness) {
-    scene.refuse("layers.thickness",
-                 fmt::format("{:g} m is less than the largest particle, {:g} m across; make layers thicker",
-                             scene.in.layers.thickness, diameter));
-  }
-}
-
-/// H_d is inside, and there is room at all.
-void check_mesh(const Case& scene) {
-  const Container& c = scene.in.container;
-  const double top = c.mesh->high()[2], r = scene.largest();
-  if (c.height > top * (1.0 + 1e-12)) {
-    scene.refuse("container.height",
-                 fmt::format("{:g} m is above the top of the mesh, {:g} m; lower it", c.height, top));
-  }
-  if (c.mesh->volume() < 4.0 / 3.0 * std::numbers::pi * r * r * r) {
-    scene.refuse("container.file",
-                 fmt::format("the mesh has a volume of {:.3g} m3, less than the largest particle, {:g} m "
-                             "across; is container.unit right?",
-                             c.mesh->volume(), 2.0 * r));
-  }
-}
-
-/// The largest particle at both ends of a frustum, and what only some vessels have.
-void check_vessel(const Case& scene) {
-  const Container& c = scene.in.container;
-  const double diameter = 2.0 * scene.largest();
-  if (scene.is(VesselShape::sphere) && c.height > c.diameter) {
-    scene.refuse("container.height", fmt::format("{:g} m is above container.diameter = {:g} m, the top of the sphere; "
-                                                 "lower it",
-                                                 c.height, c.diameter));
-  }
-  if (scene.is(VesselShape::annulus)) {
-    const double gap = 0.5 * (c.diameter - c.inner_diameter);
-    if (!(gap >= diameter)) {
-      scene.refuse("container.inner_diameter",
-                   fmt::format("{:g} m leaves {:g} m between the walls, less than the largest particle, {:g} m across; "
-                               "make it smaller",
-                               c.inner_diameter, gap, diameter));
-    }
-  }
-  if (scene.is(VesselShape::mesh)) return check_mesh(scene);
-  if (!scene.is(VesselShape::frustum)) return;
-  const geometry::Container frustum = container_of(c);
-  for (const bool top : {false, true}) {
-    const double height = top ? c.height - scene.largest() : scene.largest();
-    if (frustum.ring(height, scene.largest()).outer > 0.0) continue;
-    scene.refuse(top ? "container.top_diameter" : "container.bottom_diameter",
-                 fmt::format("{:g} m is too narrow for the largest particle, {:g} m across, to lie at the {}; make it "
-                             "larger, or the walls steeper",
-                             top ? c.top_diameter : c.bottom_diameter, diameter, top ? "top" : "floor"));
   }
 }
 
@@ -472,18 +353,10 @@ void check_petsc(const Case& scene) {
 
 }  // namespace
 
-void check_shape(const Input& in, const Document& document) {
-  const Case scene{in, document};
-  if (scene.boxed() || !scene.plane()) return;
-  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in 3D; give dimension = 3, or shape = \"box\"",
-                                              word(in.container.shape)));
-}
-
 void check_radii(const Input& in, const Document& document) { check_distribution({in, document}); }
 
 void check(const Input& in, const Document& document) {
   const Case scene{in, document};
-  check_fit(scene);
   check_vessel(scene);
   check_fraction(scene);
   check_counts(scene);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "asked/mesh_vessel.hpp"
+#include "asked/vessel.hpp"
 #include "base/error.hpp"
 #include "base/regular_file.hpp"
 #include "base/text.hpp"
@@ -18,7 +19,6 @@
 #include "input/mixture.hpp"
 #include "input/restitution.hpp"
 #include "input/values.hpp"
-#include "input/vessel.hpp"
 #include "tables/known_names.hpp"
 
 namespace packmpi::input {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "asked/vessel.hpp"
 #include "base/error.hpp"
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
-#include "input/vessel.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
 #include "scene/mixture.hpp"

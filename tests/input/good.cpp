@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "asked/vessel.hpp"
 #include "cli/starter.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
@@ -18,7 +19,6 @@
 #include "input/read.hpp"
 #include "input/restitution.hpp"
 #include "input/time_step.hpp"
-#include "input/vessel.hpp"
 #include "tables/rhythm.hpp"
 #include "tables/sieve_table.hpp"
 #include "tables/units.hpp"

@@ -1,7 +1,7 @@
 /// The container that a scene asks for.
 #pragma once
+#include "asked/input.hpp"
 #include "geometry/container.hpp"
-#include "input/input.hpp"
 
 namespace packmpi::input {
 

@@ -1,4 +1,4 @@
-#include "input/vessel.hpp"
+#include "asked/vessel.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,87 @@
+// What is asked of vessels.
+#include "input/checks.hpp"
+#include "input/scene_case.hpp"
+#include "input/words.hpp"
+
+namespace packmpi::input {
+namespace {
+
+void check_fit(const Case& scene) {
+  const double diameter = 2.0 * scene.largest();
+  const auto& size = scene.in.container.size;
+  for (std::size_t axis = 0; axis < size.size(); ++axis) {
+    if (diameter <= size[axis]) continue;
+    scene.refuse(scene.largest_key(), fmt::format("the largest particle is {:g} m across, more than {} = {:g} m; "
+                                                  "make it smaller or the container larger",
+                                                  diameter, scene.extent_key(axis), size[axis]));
+  }
+  if (diameter > scene.in.layers.thickness) {
+    scene.refuse("layers.thickness",
+                 fmt::format("{:g} m is less than the largest particle, {:g} m across; make layers thicker",
+                             scene.in.layers.thickness, diameter));
+  }
+}
+
+/// H_d is inside, and there is room at all.
+void check_mesh(const Case& scene) {
+  const Container& c = scene.in.container;
+  const double top = c.mesh->high()[2], r = scene.largest();
+  if (c.height > top * (1.0 + 1e-12)) {
+    scene.refuse("container.height",
+                 fmt::format("{:g} m is above the top of the mesh, {:g} m; lower it", c.height, top));
+  }
+  if (c.mesh->volume() < 4.0 / 3.0 * std::numbers::pi * r * r * r) {
+    scene.refuse("container.file",
+                 fmt::format("the mesh has a volume of {:.3g} m3, less than the largest particle, {:g} m "
+                             "across; is container.unit right?",
+                             c.mesh->volume(), 2.0 * r));
+  }
+}
+
+/// The largest particle lies at both ends.
+void check_frustum(const Case& scene) {
+  const Container& c = scene.in.container;
+  const double diameter = 2.0 * scene.largest();
+  const geometry::Container frustum = container_of(c);
+  for (const bool top : {false, true}) {
+    const double height = top ? c.height - scene.largest() : scene.largest();
+    if (frustum.ring(height, scene.largest()).outer > 0.0) continue;
+    scene.refuse(top ? "container.top_diameter" : "container.bottom_diameter",
+                 fmt::format("{:g} m is too narrow for the largest particle, {:g} m across, to lie at the {}; make it "
+                             "larger, or the walls steeper",
+                             top ? c.top_diameter : c.bottom_diameter, diameter, top ? "top" : "floor"));
+  }
+}
+
+}  // namespace
+
+void check_vessel(const Case& scene) {
+  check_fit(scene);
+  const Container& c = scene.in.container;
+  const double diameter = 2.0 * scene.largest();
+  if (scene.is(VesselShape::sphere) && c.height > c.diameter) {
+    scene.refuse("container.height", fmt::format("{:g} m is above container.diameter = {:g} m, the top of the sphere; "
+                                                 "lower it",
+                                                 c.height, c.diameter));
+  }
+  if (scene.is(VesselShape::annulus)) {
+    const double gap = 0.5 * (c.diameter - c.inner_diameter);
+    if (!(gap >= diameter)) {
+      scene.refuse("container.inner_diameter",
+                   fmt::format("{:g} m leaves {:g} m between the walls, less than the largest particle, {:g} m across; "
+                               "make it smaller",
+                               c.inner_diameter, gap, diameter));
+    }
+  }
+  if (scene.is(VesselShape::mesh)) return check_mesh(scene);
+  if (scene.is(VesselShape::frustum)) check_frustum(scene);
+}
+
+void check_shape(const Input& in, const Document& document) {
+  const Case scene{in, document};
+  if (scene.boxed() || !scene.plane()) return;
+  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in 3D; give dimension = 3, or shape = \"box\"",
+                                              word(in.container.shape)));
+}
+
+}  // namespace packmpi::input
