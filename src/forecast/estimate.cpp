@@ -64,11 +64,20 @@ Fitted fit_height(const scene::Scene& scene, double particles, double layers, do
           .height = (layers - margin) * solid / (fraction * scene.container.mean_area())};
 }
 
-// H_d below which so many particles fit (layers.region = "container").
+// H_d below which so many particles fit, between the shape's own walls. A frustum keeps its diameters.
 double fit_room(const scene::Scene& scene, double particles, double fraction) {
-  const double target = scene.container.height();
-  const double left = target - scene::height_below(scene, target);
-  return particles * mean_volume(scene) / (scene.container.mean_area() * fraction) + left;
+  const geometry::Container& vessel = scene.container;
+  const bool clipped = scene.in.layers.region == input::RegionRule::container;
+  const double target = vessel.height();
+  const double below = clipped ? scene::height_below(scene, target) : target;
+  const double left = target - below;
+  const bool fixed = vessel.is_mesh() || vessel.shape == geometry::Shape::sphere;
+  if (!fixed) return particles * mean_volume(scene) / (vessel.mean_area(0.0, below) * fraction) + left;
+  const double top = vessel.is_mesh() ? vessel.room->high()[2] : vessel.size[0];
+  const double height = vessel.level(particles * mean_volume(scene) / fraction) + left;
+  if (height <= top) return height;
+  refuse(fmt::format("{} particles do not fit into this vessel, which takes about {:.0f}", particles,
+                     vessel.volume_between(0.0, top - left) * fraction / mean_volume(scene)));
 }
 
 // Area of the floor on which the scene's height takes so many particles.
@@ -97,8 +106,14 @@ using Source = std::function<input::Input(const std::vector<std::string>& sets)>
 
 scene::Scene changed(const Source& source, const std::vector<std::string>& sets) { return scene::build(source(sets)); }
 
-// Of a cylinder the reader makes diameter and height of it.
-std::string size_key(const std::vector<double>& size) { return "container.size=" + list(size); }
+// Is the size of this vessel one list? Of a cylinder the reader makes diameter and height of it.
+bool has_size(const geometry::Container& vessel) {
+  return vessel.is_box() || vessel.shape == geometry::Shape::cylinder;
+}
+// Of other vessels only the height is found.
+std::string size_key(const scene::Scene& scene, const std::vector<double>& size) {
+  return has_size(scene.container) ? "container.size=" + list(size) : "container.height=" + tables::number(size.back());
+}
 
 // What is asked for, once it is clear that it is one thing.
 enum class Unknown { particles, height, floor };
@@ -140,30 +155,29 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
                        scene.in.particles.count));
   }
   unknown = unknown_of(question, scene.container.lateral_axes());
-  const bool known = scene.container.is_box() || scene.container.shape == geometry::Shape::cylinder;
-  if (!known && (question.particles || question.height || !question.sides.empty())) {
+  if (!has_size(scene.container) && (unknown == Unknown::floor || !question.sides.empty())) {
     refuse(
-        "--particles, --height and --floor find the size of a box or a cylinder; of this vessel give the lengths "
-        "themselves (--set container.height=...)");
+        "the floor is found of a box or a cylinder; of this vessel the height is (--particles N), or give its lengths "
+        "themselves (--set container.diameter=...)");
   }
   if (question.height) size.back() = *question.height;
   for (std::size_t axis = 0; axis < question.sides.size(); ++axis)
     size[axis] = question.sides[axis].value_or(size[axis]);
-  if (size != scene.in.container.size) scene = changed(source, {size_key(size)});
+  if (size != scene.in.container.size) scene = changed(source, {size_key(scene, size)});
   if (unknown == Unknown::particles) return scene;
   const auto particles = static_cast<double>(*question.particles);
   if (unknown == Unknown::floor) {
     for (int turn = 0; turn < turns; ++turn) {
       const double area = fit_floor(scene, particles, fraction_of(scene, question).value);
       scale_floor(question, area, scene.container.mean_area(), size);
-      scene = changed(source, {size_key(size)});
+      scene = changed(source, {size_key(scene, size)});
     }
     return scene;
   }
-  if (scene.in.layers.region == input::RegionRule::container) {
+  if (scene.in.layers.region == input::RegionRule::container || !scene.container.straight()) {
     for (int turn = 0; turn < turns; ++turn) {
       size.back() = fit_room(scene, particles, fraction_of(scene, question).value);
-      scene = changed(source, {size_key(size)});
+      scene = changed(source, {size_key(scene, size)});
     }
     return scene;
   }
@@ -175,7 +189,7 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
           fmt::format("{} particles are less than a layer on this floor; make the floor smaller (--floor)", particles));
     }
     size.back() = fitted.height;
-    scene = changed(source, {size_key(size), "layers.thickness=" + tables::number(fitted.thickness)});
+    scene = changed(source, {size_key(scene, size), "layers.thickness=" + tables::number(fitted.thickness)});
   }
   return scene;
 }
@@ -385,10 +399,12 @@ report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const
   report::Estimate e;
   e.scene_file = scene.in.file;
   e.found = names.at(static_cast<std::size_t>(unknown));
-  e.round = !scene.container.is_box();
+  e.round = scene.container.shape == geometry::Shape::cylinder;
+  e.other = !has_size(scene.container);
   e.size = scene.in.container.size;
   e.layer_thickness = scene.in.layers.thickness;
-  e.thickness_changed = unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open;
+  e.thickness_changed =
+      unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open && scene.container.straight();
   e.fraction = fraction.value;
   e.fraction_error = fraction.error;
   e.fraction_given = question.fraction.has_value();

@@ -30,8 +30,9 @@ std::string range(const Count& count) {
 std::string answer(const Estimate& e) {
   if (e.found == "particles") return "";
   std::string text = fmt::format("the {} is found; for the scene:\n", e.found);
-  text += e.round ? fmt::format("  container.diameter = {:.6g}\n  container.height = {:.6g}\n", e.size[0], e.size[2])
-                  : fmt::format("  container.size = {}\n", lengths(e.size));
+  text += e.other   ? fmt::format("  container.height = {:.6g}\n", e.size.back())
+          : e.round ? fmt::format("  container.diameter = {:.6g}\n  container.height = {:.6g}\n", e.size[0], e.size[2])
+                    : fmt::format("  container.size = {}\n", lengths(e.size));
   if (e.thickness_changed) text += fmt::format("  layers.thickness = {:.6g}\n", e.layer_thickness);
   return text;
 }

@@ -33,6 +33,7 @@ struct Estimate {
   std::string scene_file;
   std::string found;               ///< which of the three is the answer: "particles", "height" or "floor"
   bool round = false;              ///< a cylinder: size is its diameter twice, and its height
+  bool other = false;              ///< neither that nor a box: only its height is found
   std::vector<double> size;        ///< [m] container.size, with what was found
   double layer_thickness = 0.0;    ///< [m] layers.thickness; fitted to the particles if those were given
   bool thickness_changed = false;  ///< it is not that of the scene

@@ -239,6 +239,34 @@ TEST_F(Estimates, AContainerThatIsFilledToItsHeight) {
   EXPECT_NEAR(static_cast<double>(wider.particles.value), 2000.0, 2.0);
 }
 
+// Of vessels that are neither box nor cylinder the height is found, for as many particles as they hold.
+TEST_F(Estimates, OtherVesselsGetTheirHeight) {
+  const std::string rest =
+      "[particles]\ndensity = 1000\nyoungs_modulus = 1e7\npoisson_ratio = 0.25\n"
+      "radius = { distribution = \"equal\", value = 0.005 }\n[layers]\nthickness = 0.05\nfraction = 0.25\n"
+      "[jamming]\ngravity = 9.81\n[contact]\nfriction = 0.3\n";
+  const auto found = [&](const std::string& shape, std::int64_t particles) {
+    const input::Input in = input::parse("[container]\n" + shape + "height = 0.1\n" + rest, "vessel.toml", {});
+    return forecast::estimate(comm_, in, without_probe({.particles = particles}));
+  };
+  const std::string frustum = "shape = \"frustum\"\nbottom_diameter = ";
+  for (const std::string& shape :
+       {frustum + "0.2\ntop_diameter = 0.1\n", std::string("shape = \"sphere\"\ndiameter = 0.2\n"),
+        std::string("shape = \"annulus\"\ndiameter = 0.2\ninner_diameter = 0.08\n")}) {
+    SCOPED_TRACE(shape);
+    const report::Estimate e = found(shape, 2000);
+    EXPECT_NEAR(static_cast<double>(e.particles.value), 2000.0, 20.0);
+    EXPECT_EQ(e.found, "height");
+    EXPECT_THAT(report::to_table(e), HasSubstr("container.height = "));
+  }
+  try {
+    (void)found("shape = \"sphere\"\ndiameter = 0.2\n", 9000);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("do not fit into this vessel"));
+  }
+}
+
 TEST_F(Estimates, TheFractionIsThatOfKnownPacks) {
   const auto fraction = [&](const Set& set) { return scene::expected_fraction(scene(set)).value; };
   const Set paper{"container.size=[1,1,0.5]", "container.boundary=[\"wall\",\"wall\"]"};
