@@ -8,6 +8,7 @@
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "mesh/shapes.hpp"
+#include "source/fit.hpp"
 #include "support/packs_on_ranks.hpp"
 
 namespace packmpi::run {
@@ -79,6 +80,25 @@ TEST_F(PackInMesh, IsOneOnAnyNumberOfRanksAndAfterAStop) {
   EXPECT_GT(record_.phi_bulk, 0.45);  // few diameters wide
   EXPECT_LT(record_.phi_bulk, 0.62);
   EXPECT_NEAR(record_.rest.support, 1.0, 0.05);
+}
+
+/// A pack in a mesh is gone on with in that very surface, filled higher.
+TEST_F(PackInMesh, GoesOnFromAPackInIt) {
+  (void)run(scene_of(text_of(hopper_with_beam(), 0.08)), world_.size(), 0, "");
+  const std::size_t before = rows().id.size();
+  const auto next = [&](double width) {
+    const Soup soup = testing::moved(hopper_with_beam(), [&](const Vec3& x) { return Vec3{width * x[0], x[1], x[2]}; });
+    const std::string text = text_of(soup, 0.12) + "[start]\npack = \"" + folder_ + "/shape.hdf\"\n";
+    return scene::build(source::with_start(world_, input::parse(text, folder_ + "/next.toml", {})));
+  };
+  ASSERT_EQ(run(next(1.0), world_.size(), 0, ""), ExitCode::done) << words_;
+  EXPECT_GT(static_cast<std::size_t>(record_.particles), before + 50);
+  EXPECT_EQ(record_.audit.outside, 0);
+  EXPECT_NE(record_.start.find("shape.hdf"), std::string::npos) << record_.start;
+  EXPECT_EQ(run(next(1.01), world_.size(), 0, ""), ExitCode::bad_input);
+  if (world_.rank() == 0) {
+    EXPECT_NE(words_.find("a mesh of another surface than the scene's"), std::string::npos) << words_;
+  }
 }
 
 /// A box given by triangles is the box, but for rounding; what that does later is chance.
