@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The readers of scenes, of checkpoints and packs, and of other programs' particles, given what nobody would write: the
-# fuzzers of tests/fuzz side by side, a core each. What is new in their corpora stays in BUILD/corpus for the next time.
+# The readers of scenes, of meshes, of checkpoints and packs, and of other programs' particles, given what nobody would write:
+# the fuzzers of tests/fuzz side by side, a core each. What is new in their corpora stays in BUILD/corpus for the next time.
 # usage: [BUILD=folder] scripts/dev/fuzz.sh [seconds]     (60; folder build-fuzz)
 # Exit code 1 if anything was found: the bytes are in BUILD/findings, what happened in BUILD/NAME.log, and
 # BUILD/fuzz_NAME FILE does it again.
@@ -41,8 +41,11 @@ ASAN_OPTIONS=detect_leaks=0 fuzz checkpoint -max_len=256 -len_control=0 -detect_
 checkpoint=$!
 fuzz rows -max_len=2048 &
 rows=$!
+fuzz mesh -max_len=2048 &
+mesh=$!
 failed=0
 wait "$input" || failed=1
 wait "$rows" || failed=1
 wait "$checkpoint" || failed=1
+wait "$mesh" || failed=1
 exit "$failed"
