@@ -3,12 +3,15 @@
 doc/data/vessels.csv.
 
 usage: scripts/study/vessels.py [--ratios D/d ...] [--seeds N] [--friction MU] [--program build/packmpi] [--set KEY=VALUE ...] [--document FILE]
+       scripts/study/vessels.py --mesh [--seeds N] ...    what a vessel of 10,000 triangles costs, and how dense beds in it are, against the same of
+                                                          planes or round; a block of its own in doc/vessels.md
 
-All of it: some minutes of one core. Runs are remembered in results/vessels; the table has what is there.
+All of it: some minutes of one core. Runs are remembered in results/vessels; the table has what is there. Costs are measured anew, in turn.
 """
 import argparse
 import json
 import math
+import resource
 import subprocess
 import time
 from pathlib import Path
@@ -186,6 +189,99 @@ def figure(rows, x, y, bulk, path):
     plt.savefig(path, dpi=110)
 
 
+def quads(rows):
+    """OBJ faces of a band between two rows of numbers of points: two triangles a step."""
+    return [face for low, high in rows for k in range(len(low) - 1)
+            for face in ((low[k], low[k + 1], high[k + 1]), (low[k], high[k + 1], high[k]))]
+
+
+def obj(points, faces):
+    return "".join(f"v {x:.12g} {y:.12g} {z:.12g}\n" for x, y, z in points) + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces)
+
+
+def round_surface(strips, rings, radius, height):
+    """An upright prism of many sides whose corners lie on a cylinder: a wall of strips, floor and lid of fans."""
+    angles = 2.0 * np.pi * np.arange(strips) / strips
+    points = [(radius * np.cos(a), radius * np.sin(a), height * k / rings) for k in range(rings + 1) for a in angles] + [(0, 0, 0), (0, 0, height)]
+    rows = [[k * strips + j % strips for j in range(strips + 1)] for k in range(rings + 1)]
+    faces = quads(list(zip(rows, rows[1:])))
+    low, high = len(points) - 2, len(points) - 1
+    faces += [(low, rows[0][j + 1], rows[0][j]) for j in range(strips)] + [(high, rows[-1][j], rows[-1][j + 1]) for j in range(strips)]
+    return obj(points, faces)
+
+
+def box_surface(cuts, side, height):
+    """A box whose six sides are cut into cuts x cuts pairs of triangles."""
+    points, faces, number = [], [], {}
+    lengths = (side, side, height)
+
+    def point(*at):
+        if at not in number:
+            number[at] = len(points)
+            points.append(tuple(length * step / cuts for length, step in zip(lengths, at)))
+        return number[at]
+
+    for axis in range(3):
+        for end in (0, cuts):
+            grid = []
+            for i in range(cuts + 1):
+                row = []
+                for j in range(cuts + 1):
+                    at = [0, 0, 0]
+                    at[axis], at[(axis + 1) % 3], at[(axis + 2) % 3] = end, j, i
+                    row.append(point(*at))
+                grid.append(row if end else row[::-1])
+            faces += quads(list(zip(grid, grid[1:])))
+    return obj(points, faces)
+
+
+MESH_SIDE, MESH_HEIGHT = 0.15, 0.15   # [m]; cylinders have that diameter
+MESH_KINDS = {
+    "box": (f"size = [{MESH_SIDE}, {MESH_SIDE}, {MESH_HEIGHT}]", None),
+    "box of triangles": (None, lambda: box_surface(29, MESH_SIDE, MESH_HEIGHT)),
+    "cylinder": (f'shape = "cylinder"\ndiameter = {MESH_SIDE}\nheight = {MESH_HEIGHT}', None),
+    "cylinder of triangles": (None, lambda: round_surface(100, 49, MESH_SIDE / 2, MESH_HEIGHT)),
+}
+
+
+def mesh_run(options, kind, seed):
+    """CPU seconds of a whole job, and its summary."""
+    folder = options.results / "mesh" / f"{kind.replace(' ', '_')}_{seed}"
+    folder.mkdir(parents=True, exist_ok=True)
+    container, surface = MESH_KINDS[kind]
+    if surface:
+        (folder / "vessel.obj").write_text(surface())
+        container = f'shape = "mesh"\nfile = "vessel.obj"\nheight = {MESH_HEIGHT}'
+    text = SCENE.format(diameter=0, height=0, radius=DIAMETER / 2, thickness=0.4 * MESH_HEIGHT, friction=options.friction)
+    first, last = text.index("shape ="), text.index("[particles]")
+    scene = folder / "bed.toml"
+    scene.write_text(text[:first] + container + "\n" + text[last:].replace("[jamming]", 'region = "container"\n[jamming]'))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([options.program, "run", scene, "-q", "--force", "--set", f"seed={seed}", *options.set], cwd=folder, check=False,
+                          env=measuring.ENVIRONMENT, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode not in (0, 3):
+        common.fail(f"{scene}: {done.stdout[-300:]}{done.stderr[-300:]}")
+    return after.ru_utime - before.ru_utime, json.loads((folder / "bed.json").read_text())["achieved"]
+
+
+def mesh_table(options):
+    lines = ["| vessel | triangles | spheres | porosity | CPU, a job [s] | CPU, a particle and step [ns] | over that without triangles |", "|---|---|---|---|---|---|---|"]
+    runs = {kind: [] for kind in MESH_KINDS}
+    for seed in range(1, options.seeds + 1):   # in turn, so that what else the machine does falls on all
+        for kind in MESH_KINDS:
+            runs[kind].append(mesh_run(options, kind, seed))
+    for kind, got in runs.items():
+        cost = [1e9 * seconds / summary["particle_steps"] for seconds, summary in got]
+        of = [1e9 * seconds / summary["particle_steps"] for seconds, summary in runs[kind.split(" of ")[0]]]
+        surface = MESH_KINDS[kind][1]
+        lines.append(f"| {kind} | {surface().count('f ') if surface else 0:,} | {mean([s['particles'] for _, s in got]):,.0f} | "
+                     f"{measuring.spread([s['porosity_bulk'] for _, s in got], 4)} | {measuring.spread([t for t, _ in got], 1)} | {measuring.spread(cost, 0)} | "
+                     f"{measuring.spread([a / b for a, b in zip(cost, of)], 2) if surface else ''} |")
+    lines += ["", f"{options.seeds} seeds, friction {options.friction:g}, spheres of {1000 * DIAMETER:g} mm. {measuring.made_by('scripts/study/vessels.py --mesh')}."]
+    return "\n".join(lines)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Beds of equal spheres in cylinders.")
     parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS, help="D/d")
@@ -195,9 +291,16 @@ def main():
     parser.add_argument("--results", type=Path, default=measuring.ROOT / "results" / "vessels")
     parser.add_argument("--document", type=Path, default=measuring.ROOT / "doc" / "vessels.md")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
+    parser.add_argument("--mesh", action="store_true", help="vessels of triangles instead")
     options = parser.parse_args()
     options.program, options.results = options.program.resolve(), options.results.resolve()
     options.set = [word for value in options.set for word in ("--set", value)]
+    if options.mesh:
+        text = mesh_table(options)
+        print(text)
+        if options.document.exists():
+            measuring.write_block(options.document, "mesh", text)
+        return
     folders = {(ratio, seed): made(options, ratio, seed) for ratio in options.ratios for seed in range(1, options.seeds + 1)}
     rows = [row_of(folder, ratio, seed, options.friction) for (ratio, seed), folder in folders.items()]
     of_profile = [folder for (ratio, _), folder in folders.items() if ratio == PROFILE_OF]
