@@ -14,10 +14,10 @@ namespace {
 
 std::string names_of(const input::Input& in) {
   if (in.components.empty()) return "one material";
-  std::string names;
+  std::string all;
   for (const input::Component& of : in.components)
-    names += fmt::format("{}{}", names.empty() ? "the components " : ", ", of.name);
-  return names;
+    all += fmt::format("{}{}", all.empty() ? "the components " : ", ", of.name);
+  return all;
 }
 
 }  // namespace
