@@ -49,7 +49,7 @@ struct FormatWords {
 
 /// Collective. Reads the pack in batches and writes it in the format asked, each rank its share of the particles: the
 /// same bytes on any number of ranks, in memory that does not depend on the particles, but for springs of friction, for
-/// which rank 0 needs 250 bytes a contact. Files appear whole or not at
+/// which rank 0 needs 1.2 kB a particle. Files appear whole or not at
 /// all. Throws on all ranks, before anything is written where possible: Error(bad_input) for files that exist, a format
 /// that is not known, copies along a wall; Error(io_failure) for what cannot be read or written.
 Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request);
