@@ -9,7 +9,6 @@ diameters thick, with exact caps; the seam is the slab in which the surface of t
 """
 import argparse
 import statistics
-from pathlib import Path
 
 import numpy as np
 
@@ -94,13 +93,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--layers", type=int, default=5, help="before and after")
-    parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
-    parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/going_on")
-    parser.add_argument("--document", type=Path, default=measuring.ROOT / "doc/going_on.md")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
-    options = parser.parse_args()
-    options.program, options.results = options.program.resolve(), options.results.resolve()
-    options.set = [word for value in options.set for word in ("--set", value)]
+    options = measuring.study_options(parser, "going_on", "going_on.md")
     rows = []
     for seed in range(1, options.seeds + 1):
         rows.append(compare(options, seed))

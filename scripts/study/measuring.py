@@ -106,6 +106,17 @@ def write_csv(path, columns, rows):
         writer.writerows(rows)
 
 
+def study_options(parser, name, page):
+    """Adds what scripts have that make packs for one page, and reads the command line: program, results and document as paths, set as words of `packmpi`."""
+    parser.add_argument("--program", type=lambda text: Path(text).resolve(), default=ROOT / "build/packmpi")
+    parser.add_argument("--results", type=lambda text: Path(text).resolve(), default=ROOT / "results" / name)
+    parser.add_argument("--document", type=Path, default=ROOT / "doc" / page)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
+    options = parser.parse_args()
+    options.set = [word for value in options.set for word in ("--set", value)]
+    return options
+
+
 def write_block(document, name, text):
     """Replaces what stands between the document's two markers of that name."""
     begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"

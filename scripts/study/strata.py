@@ -16,7 +16,6 @@ import shutil
 import signal
 import subprocess
 import time
-from pathlib import Path
 
 import numpy as np
 
@@ -121,13 +120,7 @@ def main():
     parser.add_argument("--ranks", type=int, nargs="*", default=[1, 2, 3, 8])
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--codes", nargs="*", choices=handover.CODES, default=handover.CODES)
-    parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
-    parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/strata")
-    parser.add_argument("--document", type=Path, default=measuring.ROOT / "doc/howto_strata.md")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scene (tests)")
-    options = parser.parse_args()
-    options.program, options.results = options.program.resolve(), options.results.resolve()
-    options.set = [word for value in options.set for word in ("--set", value)]
+    options = measuring.study_options(parser, "strata", "howto_strata.md")
     digests = {f"{ranks} rank{'s' if ranks > 1 else ''}": digest(options, made(options, f"on_{ranks}", ranks, by_mass(options), *measuring.options_of(SHORT))) for ranks in options.ranks}
     digests["killed on 1, continued on 2"] = digest(options, killed(options))
     bits = what_came(options.results / "killed")

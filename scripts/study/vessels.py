@@ -14,7 +14,6 @@ import math
 import resource
 import subprocess
 import time
-from pathlib import Path
 
 import numpy as np
 
@@ -287,14 +286,8 @@ def main():
     parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS, help="D/d")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--friction", type=float, default=0.2)
-    parser.add_argument("--program", type=Path, default=measuring.ROOT / "build" / "packmpi")
-    parser.add_argument("--results", type=Path, default=measuring.ROOT / "results" / "vessels")
-    parser.add_argument("--document", type=Path, default=measuring.ROOT / "doc" / "vessels.md")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenes (tests)")
     parser.add_argument("--mesh", action="store_true", help="vessels of triangles instead")
-    options = parser.parse_args()
-    options.program, options.results = options.program.resolve(), options.results.resolve()
-    options.set = [word for value in options.set for word in ("--set", value)]
+    options = measuring.study_options(parser, "vessels", "vessels.md")
     if options.mesh:
         text = mesh_table(options)
         print(text)

@@ -58,7 +58,7 @@ std::string kinds_words(const Specimen& s, std::string_view word, int first) {
 
 namespace {
 
-/// LAMMPS makes the damping from it.
+/// LAMMPS makes the damping from it, before its walls were written anew in 3 Nov 2022 once more at each run.
 std::string restitution_word(double damping_ratio, int runs) {
   constexpr double most = 0.5, root_6 = 2.449489742783178;  // beyond, there is none that would do for two runs
   const double e = tsuji_restitution(damping_ratio);

@@ -6,6 +6,7 @@ namespace packmpi::exporters {
 namespace {
 
 constexpr double still = 1e-4;  // of m g d, the usual limit of rest.kinetic_energy
+constexpr double made = 1e-3;   // of the longest spring: what is farther off does not hold the pack
 
 bool at_rest(const pack::PackFile& file, const Specimen& s) {
   const double weight = s.mass * s.scene.in.jamming.gravity;
@@ -28,19 +29,24 @@ void take_springs(const comm::Comm& comm, const pack::PackFile& file, SpringsPla
     comm::agree_on(comm, [&] {
       if (comm.rank() == 0) s.touching = file.touching();
     });
-  } else if (at_rest(file, s)) {
-    using handover::Arm;
-    s.springs = handover::motions_of(comm, file, plan.by == SpringsBy::motion_of_radii ? Arm::radius : Arm::middle);
-  } else {
-    plan.missing = "as the pack moves; its velocities are";
+    return;
   }
+  if (!at_rest(file, s)) {
+    plan.missing = "as the pack moves; its velocities are";
+    return;
+  }
+  using handover::Arm;
+  s.springs = handover::motions_of(comm, file, plan.by == SpringsBy::motion_of_radii ? Arm::radius : Arm::middle);
+  if (s.springs.left <= made) return;
+  plan.missing = fmt::format("as no motion makes all of them: one is off by {:.2g} of the longest", s.springs.left);
+  s.springs = {};
 }
 
 std::string words_of(const SpringsPlan& plan, const Specimen& s) {
   if (plan.by == SpringsBy::none) return "";
   if (!plan.on()) return "not carried over, " + plan.missing;
   if (plan.by == SpringsBy::forces) return "carried over as forces";
-  return fmt::format("carried over, to {:.1g} of the longest", s.springs.left);
+  return fmt::format("carried over, each within {:.1g} of the longest", s.springs.left);
 }
 
 }  // namespace packmpi::exporters

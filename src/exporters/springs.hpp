@@ -25,7 +25,8 @@ struct SpringsPlan {
 /// `stored`: the pack has its springs. Local, pure.
 [[nodiscard]] SpringsPlan plan_springs(const ConvertRequest& request, const scene::Scene& scene, SpringsBy by,
                                        bool stored);
-/// Collective. Puts them into the specimen; of a pack that moves its velocities go instead, which is said in the plan.
+/// Collective. Puts them into the specimen, if the pack is at rest and they can all be made; if not, the plan says why
+/// they stay behind.
 void take_springs(const comm::Comm& comm, const pack::PackFile& file, SpringsPlan& plan, Specimen& specimen);
 /// For the user; "": nothing to tell.
 [[nodiscard]] std::string words_of(const SpringsPlan& plan, const Specimen& specimen);

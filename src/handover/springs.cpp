@@ -5,16 +5,16 @@
 #include <cstring>
 #include <string>
 
+#include "mesh/vectors.hpp"
+
 namespace packmpi::handover {
 namespace {
+
+using mesh::cross;
 
 constexpr double exact = 1e-9;         // of the springs, by their mean square
 constexpr double no_progress = 1e-12;  // of the gradient
 constexpr std::int32_t most_rounds = 20000;
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 void add(Vec3& to, double factor, const Vec3& v) {
   for (std::size_t c = 0; c < 3; ++c) to[c] += factor * v[c];

@@ -33,10 +33,10 @@ struct Motions {
 };
 
 /// The motion of least squares that makes the springs of `rows`, by conjugate gradients on the normal equations (CGLS;
-/// Hestenes and Stiefel 1952), without their matrix. A contact has two springs to be met and a particle six numbers to
-/// meet them with, so for fewer than three contacts a particle, as in packs at rest, there is one. `spins`: particles
-/// turn. Local; the same bits wherever it is called. Cost: O(rows) a round, hundreds to thousands of rounds; 200 bytes
-/// a particle.
+/// Hestenes and Stiefel 1952), without their matrix. A contact is two equations, a particle six unknowns (in the plane
+/// one and three): below a coordination number of six, as of packs at rest, there is one that makes them all. `spins`:
+/// particles turn. Local; the same bits wherever it is called. Cost: O(rows) a round, hundreds to thousands of rounds;
+/// 200 bytes a particle.
 [[nodiscard]] Motions motions_of(std::span<const pack::TouchingRow> rows, std::span<const double> radius, Arm arm,
                                  bool spins);
 

@@ -47,15 +47,18 @@ class Convert : public ::testing::Test {
   std::string make_pack(std::size_t count, int dimension, const std::string& boundary) {
     return make_pack_of(count, dimension, scene_text(dimension, boundary));
   }
-  std::string make_pack_of(std::size_t count, int dimension, const std::string& scene) {
+  /// With those contacts for which `keep` holds, and walls; none: without any.
+  std::string make_pack_of(std::size_t count, int dimension, const std::string& scene,
+                           const std::function<bool(const ContactRow&)>& keep = {}) {
     std::vector<Grain> grains = testing::some_grains(count, dimension);
     for (Grain& g : grains) g.r *= 0.1;
-    const auto parts = testing::make_parts(comm_, particles::layout_of(dimension, true), grains, Spread::some);
+    auto parts = testing::make_parts(comm_, particles::layout_of(dimension, true), grains, Spread::some);
+    if (keep) std::erase_if(parts.rows, std::not_fn(keep));
     RunRecord record = testing::some_record(dimension, 1);
     record.effective_input = input::parse(scene, "scene", {}).effective;
     record.seed = 7;
     const std::string path = folder_.file("sample.hdf");
-    write_pack(comm_, path, parts.view(false), record);
+    write_pack(comm_, path, parts.view(static_cast<bool>(keep)), record);
     return path;
   }
 
@@ -135,6 +138,51 @@ TEST_F(Convert, SameBytesOnAnyNumberOfRanks) {
     comm_.barrier();
   }
   EXPECT_EQ(files_in(here), 17u);  // ten files, seven of them with a companion, and no temporary
+}
+
+// In which small particles weigh enough for their forces to be summed.
+std::string with_memory() {
+  std::string text = scene_text(3, both_periodic) + "[contact]\nfriction = 0.5\ntangential = \"mindlin\"\n";
+  const std::string gravity = "gravity = 2.0";
+  return text.replace(text.find(gravity), gravity.size(), "gravity = 2000.0");
+}
+
+// One contact a particle leaves every spring a motion.
+TEST_F(Convert, SpringsGoAlongWithTheSameBytesOnAnyNumberOfRanks) {
+  const std::string pack =
+      make_pack_of(301, 3, with_memory(), [](const ContactRow& row) { return row.second == row.first + 1; });
+  const std::string here = subfolder("here"), one = subfolder("one");
+  for (const char* name : {"lammps", "liggghts", "yade"}) {
+    ConvertRequest request{.pack = pack, .format = name, .file = here + "/" + name + ".data"};
+    const Converted done = convert_pack(comm_, request);
+    EXPECT_TRUE(done.springs.starts_with("carried over")) << done.springs;
+    EXPECT_EQ(done.files.size(), std::string(name) == "yade" ? 3U : 2U);
+    if (comm_.rank() != 0) continue;
+    request.file = one + "/" + name + ".data";
+    const Converted serial = convert_pack(alone_, request);
+    for (std::size_t f = 0; f < done.files.size(); ++f) {
+      EXPECT_TRUE(contents(done.files[f]) == contents(serial.files[f])) << done.files[f];
+    }
+    const std::string script = contents(done.files[1]);
+    EXPECT_NE(script.find(done.files.size() == 3U ? "shearElastic" : "timestep        1000\nrun             1\n"),
+              std::string::npos);
+  }
+  comm_.barrier();
+}
+
+// Of more contacts than motions: velocities are the pack's, and the script makes no springs.
+TEST_F(Convert, SpringsThatNoMotionMakesStayBehindAndItIsSaid) {
+  const std::string pack = make_pack_of(301, 3, with_memory(), [](const ContactRow&) { return true; });
+  const std::string bare = subfolder("bare") + "/bare.data", many = subfolder("many") + "/bare.data";
+  const Converted done = convert_pack(comm_, {.pack = pack, .format = "lammps", .file = many});
+  EXPECT_TRUE(done.springs.starts_with("not carried over, as no motion makes all of them")) << done.springs;
+  const std::string without = make_pack_of(301, 3, with_memory());  // the same pack
+  EXPECT_TRUE(
+      convert_pack(comm_, {.pack = without, .format = "lammps", .file = bare}).springs.find("output.contacts") !=
+      std::string::npos);
+  if (comm_.rank() != 0) return;
+  EXPECT_TRUE(contents(many) == contents(bare));
+  EXPECT_EQ(contents(done.files[1]).find("timestep        1000"), std::string::npos);
 }
 
 /// Numbers of a CSV file, row by row.

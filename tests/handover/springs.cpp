@@ -5,16 +5,14 @@
 
 #include <cmath>
 
+#include "mesh/vectors.hpp"
 #include "support/scattered.hpp"
 
 namespace packmpi::handover {
 namespace {
 
+using mesh::cross;
 using pack::TouchingRow;
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // Relative velocity of the surfaces, as fix wall/gran and pair granular have it: of the first to the second.
 Vec3 slip(const Vec3& va, const Vec3& vb, const Vec3& spins, const Vec3& n) {
