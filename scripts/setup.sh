@@ -8,7 +8,7 @@
 #   --report  also what --render brings, and Chromium, in which the test of packmpi report reads its page
 #   --notebooks also what runs Jupyter's notebooks, of doc/notebooks
 #   --site    also MkDocs, for the documentation as a site
-#   --checks  also clang-tidy and clang-format, for scripts/dev/check.sh
+#   --checks  also clang-tidy, clang-format and mypy, for scripts/dev/check.sh
 #   --fuzz    also clang with libFuzzer, for scripts/dev/fuzz.sh
 #   --valgrind also valgrind, for scripts/dev/valgrind.sh
 set -euo pipefail
@@ -25,7 +25,7 @@ for option in "$@"; do
     --report) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth chromium fonts-dejavu-core) ;;
     --notebooks) packages+=(python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib) ;;
     --site) packages+=(mkdocs mkdocs-material) ;;
-    --checks) packages+=(clang clang-tidy clang-format python3) ;;
+    --checks) packages+=(clang clang-tidy clang-format mypy python3 python3-numpy) ;;
     --fuzz) packages+=(clang libclang-rt-14-dev llvm) ;;
     --valgrind) packages+=(valgrind) ;;
     *) sed -n '2,13s/^# //p' "$0" >&2; exit 2 ;;

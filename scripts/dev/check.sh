@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The static checks: format of every source, clang-tidy over src/. Nothing is changed.
-# usage: [BUILD=folder] scripts/dev/check.sh [format|tidy]      (clang-format -i FILE mends the format)
+# The static checks: format of every source, clang-tidy over src/, types of the Python package. Nothing is changed.
+# usage: [BUILD=folder] scripts/dev/check.sh [format|tidy|types]      (clang-format -i FILE mends the format)
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${BUILD:-$root/build}
@@ -35,5 +35,11 @@ PYTHON
     { echo "check: clang-tidy found something" >&2; return 1; }
 }
 
-[[ $# -gt 0 ]] || set -- format tidy
+# What numpy, h5py and JSON give is of any type; of what has no types itself (h5py, matplotlib, VTK) nothing is known.
+check_types() {
+  mypy --strict --no-warn-return-any --ignore-missing-imports --python-version 3.11 --cache-dir="$build/check/mypy" \
+    --no-error-summary "$root/scripts/python/packmpi" || { echo "check: mypy found something" >&2; return 1; }
+}
+
+[[ $# -gt 0 ]] || set -- format types tidy
 for check in "$@"; do "check_$check"; done

@@ -1,4 +1,5 @@
 """In plain Python, in the folder where the program has made bed.hdf of bed.toml: arrays, errors, files, ensembles, time."""
+import ast
 import contextlib
 import gc
 import io
@@ -36,6 +37,29 @@ pack = packmpi.run({
     "contact": {"friction": 0.3, "damping_ratio": 0.3}})
 position, radius, force = pack.position, pack.radius, pack.forces
 """
+
+
+def arguments_of_stub(body):
+    """What a stub declares: of a function the number of its arguments, of a class what it declares, of all else nothing."""
+    told = {}
+    for one in body:
+        if isinstance(one, ast.FunctionDef):
+            told[one.name] = None if any(isinstance(by, ast.Name) and by.id == "property" for by in one.decorator_list) else len(one.args.args)
+        elif isinstance(one, ast.ClassDef):
+            told[one.name] = arguments_of_stub(one.body)
+        elif isinstance(one, ast.AnnAssign):
+            told[one.target.id] = None
+    return told
+
+
+def arguments_of(compiled):
+    """The same of what was compiled; pybind11 writes each argument into a function's first line as "arg0: int"."""
+    told = {}
+    for name, one in vars(compiled).items():
+        if not name.startswith("_"):
+            words = (getattr(compiled, name).__doc__ or "").splitlines() if callable(getattr(compiled, name)) else []
+            told[name] = arguments_of(one) if isinstance(one, type) else len(re.findall(r"\b(?:arg[0-9]+|self): ", words[0])) if words else None
+    return told
 
 
 class Arrays(unittest.TestCase):
@@ -206,6 +230,13 @@ class Manners(unittest.TestCase):
     def test_import_starts_no_mpi(self):
         words = "import packmpi, sys; packmpi.Pack; sys.exit('packmpi._core' in sys.modules)"
         self.assertEqual(subprocess.run([sys.executable, "-c", words], check=False).returncode, 0)
+
+    def test_the_stub_is_the_compiled_part(self):
+        """_core.pyi, which mypy believes: the same names, and functions of as many arguments."""
+        from packmpi import _core
+        stub = ast.parse((Path(packmpi.__file__).parent / "_core.pyi").read_text(encoding="utf-8")).body
+        self.assertEqual(arguments_of_stub(stub), arguments_of(_core))
+        self.assertIn("convert", arguments_of(_core))
 
     def test_many_in_few_lines_and_seconds(self):
         lines = [line for line in SHORT.splitlines() if line.strip()]

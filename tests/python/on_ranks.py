@@ -62,7 +62,7 @@ def of_components(rank):
 
 
 def main():
-    rank, ranks = core().rank(None), core().ranks(None)
+    rank, ranks = core.rank(None), core.ranks(None)
     made = packmpi.read("bed.hdf")
     share = packmpi.run("bed.toml")
     assert share.summary["particles"] == made.count and (ranks == 1 or share.count < made.count)

@@ -15,6 +15,9 @@
 All numbers are in SI units. It works in plain Python, on one rank; under `mpirun -n N python3`, on all of them; and with a
 communicator of mpi4py, on its ranks. MPI starts when it is first needed: importing and reading start none. doc/python.md tells more.
 """
+from pathlib import Path
+from typing import Union
+
 from .making import Ensemble, Progress, ensemble, run
 from .pack import Pack
 from .problem import Problem, SceneError
@@ -23,6 +26,6 @@ from .scenes import Scene, scene
 __all__ = ["Ensemble", "Pack", "Problem", "Progress", "Scene", "SceneError", "ensemble", "read", "run", "scene"]
 
 
-def read(file):
+def read(file: Union[str, Path]) -> Pack:
     """A pack that was made before, NAME.hdf: the same as Pack(file). Raises Problem."""
     return Pack(file)

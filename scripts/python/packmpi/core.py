@@ -2,13 +2,13 @@
 import atexit
 from functools import lru_cache
 from types import ModuleType
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 from .problem import Problem
 
 
 @lru_cache(maxsize=None)
-def core() -> ModuleType:
+def loaded() -> ModuleType:
     """packmpi._core. Raises Problem, with what to do, if it was not built for this Python."""
     try:
         from . import _core
@@ -17,6 +17,20 @@ def core() -> ModuleType:
                       f"({error}). scripts/build.sh makes it in build/python, for Debian's /usr/bin/python3") from error
     atexit.register(_core.end)   # before MPI is ended, by us or by mpi4py
     return _core
+
+
+class _Core:
+    """packmpi._core, loaded when something of it is asked for."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(loaded(), name)
+
+
+if TYPE_CHECKING:   # so that every call is held against _core.pyi
+    from . import _core
+    core = _core
+else:
+    core = _Core()
 
 
 def number_of(comm: Optional[Any]) -> Optional[int]:

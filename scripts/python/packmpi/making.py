@@ -66,8 +66,8 @@ def run(scene: Union[Scene, Source], comm: Optional[Any] = None, *, folder: Unio
     Returns a Pack; one that missed targets, too: Pack.missed. Raises SceneError or Problem, on all ranks. Ctrl-C ends it.
     """
     what, here = ready(scene), number_of(comm)
-    told = listener(progress, core().rank(here))
-    made = core().run(what.made, here, str(folder) if folder else "", force, restart, max_hours, told)
+    told = listener(progress, core.rank(here))
+    made = core.run(what.made, here, str(folder) if folder else "", force, restart, max_hours, told)
     if progress is True and told:
         print(file=sys.stderr)
     if gather:
@@ -92,7 +92,7 @@ class Ensemble:
     def __len__(self) -> int:
         return len(self.paths)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Pack]:
         """The packs, one after the other, read when they are asked for."""
         return (Pack(path) for path in self.paths)
 
@@ -147,8 +147,8 @@ def ensemble(scene: Union[Scene, Source], folder: Union[str, Path], comm: Option
     if what.packs < 2:
         raise Problem(f'{what.file}: one pack is no ensemble; set "ensemble.packs", or call packmpi.run()')
     here = number_of(comm)
-    with counted(Path(folder), what, progress if core().rank(here) == 0 else None, fresh=not restart):
-        code = core().make_ensemble(what.made, here, str(folder), force, restart, max_hours)
+    with counted(Path(folder), what, progress if core.rank(here) == 0 else None, fresh=not restart):
+        code = core.make_ensemble(what.made, here, str(folder), force, restart, max_hours)
     if code not in (0, 3):
         raise Problem(f"{folder}: packs of the ensemble failed (code {code}); their logs say why")
     return Ensemble(Path(folder), what.name, code)

@@ -201,7 +201,7 @@ class Pack:
         may be no folder that all of them see: then nobody guesses."""
         if self.path is not None:
             return self.path
-        if core().ranks(number_of(self._comm)) > 1:
+        if core.ranks(number_of(self._comm)) > 1:
             raise Problem("this pack is in memory only, on several ranks: save() it to a file first, where all ranks can read it")
         if self._folder is None:
             self._folder = tempfile.mkdtemp(prefix="packmpi-")
@@ -215,7 +215,7 @@ class Pack:
         """What the pack is like inside: profiles, contacts, forces, g(r), order (doc/analyze.md). Collective over the ranks that have
         it. Writes NAME.analysis.json beside the pack's file; a pack in memory writes both to a folder of its own. Raises Problem."""
         path = self._file()
-        core().analyze(number_of(self._comm), str(path))
+        core.analyze(number_of(self._comm), str(path))
         return json.loads(path.with_suffix(".analysis.json").read_text(encoding="utf-8"))
 
     def convert(self, format: str, file: Union[str, Path, None] = None, *, trim: str = "none",   # pylint: disable=redefined-builtin
@@ -231,7 +231,7 @@ class Pack:
         """
         if file is None and self.path is None:
             raise Problem("this pack is in memory only: give the file to write, or save() it first")
-        done = core().convert(number_of(self._comm), str(self._file()), format, "" if file is None else str(file), trim, force)
+        done = core.convert(number_of(self._comm), str(self._file()), format, "" if file is None else str(file), trim, force)
         return [Path(one) for one in done]
 
     def report(self, file: Union[str, Path, None] = None, *, size: int = 700) -> Path:
@@ -243,7 +243,7 @@ class Pack:
         path = self._file()
         self.analyze()
         page = Path(file) if file is not None else path.with_suffix(".html")
-        if core().rank(number_of(self._comm)) == 0:
+        if core.rank(number_of(self._comm)) == 0:
             from .report import write_page
             write_page(Pack(path), page, pixels=size)
         return page

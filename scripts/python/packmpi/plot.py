@@ -280,7 +280,7 @@ def draw(name: str, pack: Pack, analysis: dict[str, Any], path: Union[str, Path]
         figure = PLOTS[name](pack, analysis)
         if figure is None:
             return False
-        extra = {"metadata": {"Date": None}} if Path(path).suffix == ".svg" else {"dpi": 160}
+        extra: dict[str, Any] = {"metadata": {"Date": None}} if Path(path).suffix == ".svg" else {"dpi": 160}
         try:
             figure.savefig(path, **extra)
         except OSError as error:
@@ -301,7 +301,7 @@ def main(words: list[str]) -> None:
     pack = Pack(options.pack)
     if pack.count == 0:
         raise Problem(f"{options.pack} has no particles")
-    folder = options.output or pack.path.parent
+    folder: Path = options.output or Path(options.pack).parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

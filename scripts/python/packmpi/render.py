@@ -169,6 +169,7 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
 
 def chain_lines(pack: Pack, axes: Axes, points: float) -> float:
     """Lines between touching discs, as thick as the normal force: `points` for the mean one, which is returned [N]."""
+    assert pack.pairs is not None and pack.forces is not None   # who calls this has looked
     first, second = pack.position[pack.pairs[:, 0], :2], pack.position[pack.pairs[:, 1], :2]
     normal = second - first
     near = np.abs(normal[:, 0]) < 0.5 * pack.size[0]  # not those across a periodic side

@@ -2,7 +2,7 @@
 import os
 import shutil
 import sys
-from typing import Any
+from typing import Any, Sequence, Union
 
 import numpy as np
 import vtk
@@ -15,7 +15,7 @@ from .pack import Floats, Pack
 from . import vessel
 from .style import BACKGROUND, INK, LID, TARGET
 
-Point = tuple[float, float, float]
+Point = Union[tuple[float, float, float], Floats]
 Segment = tuple[Point, Point]
 Image = NDArray[np.uint8]   # (height, width, 3), row 0 above
 
@@ -70,7 +70,7 @@ def spheres_actor(pack: Pack, rgba: Floats) -> Any:
     return actor
 
 
-def lines_actor(segments: list[Segment], colour: str, thickness: float) -> Any:
+def lines_actor(segments: Sequence[Segment], colour: str, thickness: float) -> Any:
     """Lines as tubes of a radius [m]."""
     points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
     for ends in segments:
@@ -192,7 +192,7 @@ def container_actors(pack: Pack) -> list[Any]:
         return mesh_actors(pack)
     if pack.shape != "box":
         return vessel_actors(pack)
-    upright = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
+    upright: list[Segment] = [((x, y, 0), (x, y, top)) for x in (0, lx) for y in (0, ly)]
     thickness = 0.0020
     if pack.lid is not None:
         return [lines_actor(frame(lx, ly, 0) + upright, INK, thickness), lines_actor(frame(lx, ly, top), LID, 2.5 * thickness), plate_actor(lx, ly, top)]

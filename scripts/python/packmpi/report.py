@@ -99,8 +99,8 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
              (f"{0.001 * made['stress_on_lid']:.4g} kPa", "stress on the lid") if made.get("stress_on_lid") else
              (f"{made['floor_force'] / made['weight']:.3f}" if made["weight"] else "–", "of the weight on the floor")]
-    tiles = [f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles]
-    return f'<div class="tiles">{"".join(tiles)}</div>'
+    drawn = "".join(f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles)
+    return f'<div class="tiles">{drawn}</div>'
 
 
 def warning(pack: Pack) -> str:
@@ -122,6 +122,7 @@ def pictures(pack: Pack, folder: Path, pixels: int) -> str:
     elif pack.dimension == 2:
         notes = '<p class="note">No force chains: the pack was written without <code>output.contacts = true</code>.</p>'
     shown = {folder / f"picture.{first}.png": words, folder / "picture.contacts.png": "Coloured by the coordination number"}
+    assert pack.path is not None   # of a pack that has a file
     wrong = pictures_of(pack.path, shown, "-o", folder / "picture.png", "--size", pixels, "--color", first, "contacts")
     if wrong:
         return f'<p class="note">No pictures: {html.escape(wrong)}</p>'
@@ -310,8 +311,8 @@ def provenance(pack: Pack) -> str:
 def page(pack: Pack, analysis: dict[str, Any], pixels: int) -> str:
     """The whole page; pictures are about `pixels` wide."""
     container = container_size(pack).replace("x", "×")
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
         body = [
             f"<header><h1>{html.escape(pack.name)}</h1><p>{number(pack.count)} {pack.noun} in {container}, "
             f"seed {pack.provenance['seed']}, by packmpi {html.escape(pack.provenance['version'])}</p></header>",
@@ -364,7 +365,7 @@ def main(words: list[str]) -> None:
     pack = Pack(options.pack)
     if pack.count == 0:
         raise Problem(f"{options.pack} has no particles")
-    path: Path = options.output or pack.path.with_suffix(".html")
+    path: Path = options.output or Path(options.pack).with_suffix(".html")
     written = write_page(pack, path, program=options.program, pixels=options.size)
     print(f"{path}: {pack.count} particles, {written / 1024:.0f} kB")
     if options.crate:

@@ -43,7 +43,7 @@ class Scene:
         particles (about), time_step and time_step_limit [s], most_ranks, mean_overlap [radii, at rest], restitution, remarks and
         warnings (lists of sentences). Raises SceneError.
         """
-        return json.loads(core().check(self.made, number_of(comm)))
+        return json.loads(core.check(self.made, number_of(comm)))
 
     def estimate(self, *, particles: int = 0, height: float = 0.0, ranks: int = 0, probe: bool = True,
                  comm: Optional[Any] = None) -> dict[str, Any]:
@@ -56,7 +56,7 @@ class Scene:
 
         Raises SceneError.
         """
-        return json.loads(core().estimate(self.made, number_of(comm), particles, height, ranks, probe))
+        return json.loads(core.estimate(self.made, number_of(comm), particles, height, ranks, probe))
 
 
 def scene(source: Source, *, set: Optional[Mapping[str, Any]] = None, seed: Optional[int] = None,   # pylint: disable=redefined-builtin
@@ -75,8 +75,8 @@ def scene(source: Source, *, set: Optional[Mapping[str, Any]] = None, seed: Opti
     if seed is not None:
         changes.append(f"seed={int(seed)}")
     if isinstance(source, Mapping):
-        return Scene(core().Scene.from_text(dumps(source), f"{name}.toml", changes))
+        return Scene(core.Scene.from_text(dumps(source), f"{name}.toml", changes))
     path = fspath(source)
     if "\n" in path:
-        return Scene(core().Scene.from_text(path, f"{name}.toml", changes))
-    return Scene(core().Scene.from_file(path, changes))
+        return Scene(core.Scene.from_text(path, f"{name}.toml", changes))
+    return Scene(core.Scene.from_file(path, changes))

@@ -6,19 +6,20 @@ PROPERTY: radius, layer, contacts, id (default: layer). With a picture's name it
 """
 import os
 import sys
+from typing import Any
 
 from paraview.simple import (ColorBy, GetActiveSource, GetActiveViewOrCreate, OpenDataFile, Render, ResetCamera,
                              SaveScreenshot, Show)
 
 
-def pack_at(path):
+def pack_at(path: str) -> Any:
     pack = OpenDataFile(os.path.abspath(path))
     if pack is None:
         raise SystemExit(f"ParaView cannot open {path}: is it a pack, and does its name end in .hdf?")
     return pack
 
 
-def show_spheres(pack, color):
+def show_spheres(pack: Any, color: str) -> Any:
     """Drawn as shaded points, no mesh a particle: a million of them turn smoothly."""
     view = GetActiveViewOrCreate("RenderView")
     display = Show(pack, view)
@@ -38,7 +39,7 @@ def show_spheres(pack, color):
     return view
 
 
-def main(words):
+def main(words: list[str]) -> None:
     pack = pack_at(words[0]) if words else GetActiveSource()
     if pack is None:
         raise SystemExit("open a pack first, or name it: pvpython show_in_paraview.py NAME.hdf")

@@ -1,6 +1,6 @@
 """Size distributions to be drawn: that of a scene, as scene::SizeCurve computes it, and that of a pack."""
 from math import erf
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
 
@@ -27,15 +27,17 @@ def target_curve(radius: dict[str, Any]) -> tuple[Floats, Floats, Floats]:
 
 
 # Radii and shares of distributions of few radii.
-CLASSES = {"equal": lambda radius: ([radius["value"]], [1.0]),
-           "bidisperse": lambda radius: ([radius["small"], radius["large"]], [1.0 - radius["large_share"], radius["large_share"]]),
-           "discrete": lambda radius: (radius["radii"], radius["shares"])}
+CLASSES: dict[str, Callable[[dict[str, Any]], tuple[Any, Any]]] = {
+    "equal": lambda radius: ([radius["value"]], [1.0]),
+    "bidisperse": lambda radius: ([radius["small"], radius["large"]], [1.0 - radius["large_share"], radius["large_share"]]),
+    "discrete": lambda radius: (radius["radii"], radius["shares"])}
 
 # The share up to r of the others, but for a constant and a factor: these follow from the limits.
-SMOOTH = {"uniform": lambda r, radius: r,
-          "gaussian": lambda r, radius: normal((r - radius["mean"]) / radius["sd"]),
-          "lognormal": lambda r, radius: normal(np.log(r / radius["median"]) / radius["log_sd"]),
-          "weibull": lambda r, radius: -np.exp(-(r / radius["scale"]) ** radius["shape"])}
+SMOOTH: dict[str, Callable[[Floats, dict[str, Any]], Floats]] = {
+    "uniform": lambda r, radius: r,
+    "gaussian": lambda r, radius: normal((r - radius["mean"]) / radius["sd"]),
+    "lognormal": lambda r, radius: normal(np.log(r / radius["median"]) / radius["log_sd"]),
+    "weibull": lambda r, radius: -np.exp(-(r / radius["scale"]) ** radius["shape"])}
 
 
 def weighted_otherwise(r: Floats, share: Floats, by_mass: bool) -> Floats:

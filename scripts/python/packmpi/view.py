@@ -28,11 +28,11 @@ def encoded(values: Any) -> str:
 def fields_of(pack: Pack) -> list[tuple[dict[str, Any], Floats]]:
     """What spheres may be coloured by: name, unit, ends of the scale, and the values."""
     scale, unit = length_unit(float(pack.radius.max()))
-    fields = [("radius", unit, scale * pack.radius)] if np.ptp(pack.radius) > 0.0 else []
+    fields: list[tuple[str, str, Any]] = [("radius", unit, scale * pack.radius)] if np.ptp(pack.radius) > 0.0 else []
     fields += [("contacts", "", pack.contacts), ("layer of insertion", "", pack.layer + 1)]
     scale, unit = length_unit(float(pack.size[-1]))
     fields.append(("height", unit, scale * pack.position[:, 2]))
-    if pack.pairs is not None and len(pack.pairs) > 0:
+    if pack.pairs is not None and pack.forces is not None and len(pack.pairs) > 0:
         force = np.zeros(pack.count)
         strength = np.linalg.norm(pack.forces, axis=1)
         for end in (0, 1):
