@@ -2,8 +2,10 @@
 #pragma once
 #include <mpi.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,8 +56,9 @@ struct RunOptions {
 struct EstimateOptions {
   std::int64_t particles = 0;  ///< so many; the height is found, or with a height the floor; 0: as the scene has it
   double height = 0.0;         ///< [m] H_d; 0: as the scene has it
-  int ranks = 0;               ///< 0: those of comm
-  bool probe = true;           ///< this machine is tried for a second or two
+  std::vector<std::optional<double>> floor{};  ///< [m] its sides, none: open; empty: as the scene has it
+  int ranks = 0;                               ///< 0: those of comm
+  bool probe = true;                           ///< this machine is tried for a second or two
 };
 
 /// What a scene will take, as JSON, that of `packmpi estimate --json` (doc/estimate.md). Collective. Throws Failure
@@ -66,9 +69,27 @@ struct EstimateOptions {
 /// people. Throws Failure (5).
 std::string analyze(MPI_Comm comm, const std::string& pack);
 
-/// Writes a pack file in the format of another code (doc/convert.md). `file`: "" is beside the pack. `trim`: "none",
-/// "drop" or "cut". Collective. Returns the files that were written. Throws Failure (2, 5).
-std::vector<std::string> convert(MPI_Comm comm, const std::string& pack, const std::string& format,
-                                 const std::string& file = "", const std::string& trim = "none", bool force = false);
+/// What of a pack is written, and where.
+struct ConvertOptions {
+  std::string file{};        ///< "": beside the pack, with the format's ending
+  std::string trim{"none"};  ///< "drop" or "cut": what is higher than H_d is left out
+  std::string cut{};         ///< a specimen inside, "cylinder:diameter=0.15,height=0.3" (doc/vessels.md); "": all
+  std::array<int, 2> copies{1, 1};  ///< side by side along x and y, periodic axes only
+  bool force = false;               ///< files that exist may be replaced
+};
+
+/// What was written.
+struct Converted {
+  std::vector<std::string> files;
+  std::int64_t particles = 0;
+  double volume = 0.0;        ///< [m3] of the particles as spheres
+  std::string cut{};          ///< what was cut out, in words; "": nothing
+  double cut_fraction = 0.0;  ///< its solid fraction, spheres cut by its sides
+  std::string springs{};      ///< what became of the springs of friction, in words; "": nothing to tell
+};
+
+/// Writes a pack file in the format of another code (doc/convert.md). Collective. Throws Failure (2, 5).
+Converted convert(MPI_Comm comm, const std::string& pack, const std::string& format,
+                  const ConvertOptions& options = {});
 
 }  // namespace packmpi

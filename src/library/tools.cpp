@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "exporters/convert.hpp"
 #include "forecast/advice.hpp"
@@ -58,6 +59,7 @@ std::string estimate(const Scene& scene, MPI_Comm world, const EstimateOptions& 
     forecast::Question question;
     if (options.particles > 0) question.particles = options.particles;
     if (options.height > 0.0) question.height = options.height;
+    question.sides = options.floor;
     question.ranks = options.ranks;
     question.probe = options.probe;
     words = report::to_json(forecast::estimate(comm, scene.input(), question));
@@ -72,16 +74,24 @@ std::string analyze(MPI_Comm world, const std::string& pack) {
   return words;
 }
 
-std::vector<std::string> convert(MPI_Comm world, const std::string& pack, const std::string& format,
-                                 const std::string& file, const std::string& trim, bool force) {
+Converted convert(MPI_Comm world, const std::string& pack, const std::string& format, const ConvertOptions& options) {
   const comm::Comm comm(world);
-  std::vector<std::string> files;
+  Converted told;
   library::together(comm, "", [&] {
-    exporters::ConvertRequest request{
-        .pack = pack, .format = format, .file = file, .trim = trim_of(trim), .copies = {1, 1}, .force = force};
-    files = exporters::convert_pack(comm, request).files;
+    if (options.copies[0] < 1 || options.copies[1] < 1) {
+      throw Error(ExitCode::bad_input, "copies: give two counts from 1 on");
+    }
+    exporters::Converted done = exporters::convert_pack(comm, {.pack = pack,
+                                                               .format = format,
+                                                               .file = options.file,
+                                                               .trim = trim_of(options.trim),
+                                                               .cut = options.cut,
+                                                               .copies = options.copies,
+                                                               .force = options.force});
+    told = {std::move(done.files), done.particles,    done.volume,
+            std::move(done.cut),   done.cut_fraction, std::move(done.springs)};
   });
-  return files;
+  return told;
 }
 
 }  // namespace packmpi

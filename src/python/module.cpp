@@ -132,6 +132,16 @@ RunOptions options_of(const std::string& folder, bool force, const std::string& 
   return options;
 }
 
+void define_converted(py::module_& module) {
+  py::class_<Converted>(module, "Converted")
+      .def_readonly("files", &Converted::files)
+      .def_readonly("particles", &Converted::particles)
+      .def_readonly("volume", &Converted::volume)
+      .def_readonly("cut", &Converted::cut)
+      .def_readonly("cut_fraction", &Converted::cut_fraction)
+      .def_readonly("springs", &Converted::springs);
+}
+
 void define_functions(py::module_& module) {
   using Comm = std::optional<std::int64_t>;
   module.def("run", [](const Scene& scene, const Comm& comm, const std::string& folder, bool force,
@@ -150,17 +160,23 @@ void define_functions(py::module_& module) {
     return make_ensemble(scene, here, options);
   });
   module.def("check", [](const Scene& scene, const Comm& comm) { return check(scene, communicator(comm)); });
-  module.def("estimate",
-             [](const Scene& scene, const Comm& comm, std::int64_t particles, double height, int ranks, bool probe) {
-               const MPI_Comm here = communicator(comm);
-               const EstimateOptions options{.particles = particles, .height = height, .ranks = ranks, .probe = probe};
-               const py::gil_scoped_release free;
-               return estimate(scene, here, options);
-             });
+  module.def("estimate", [](const Scene& scene, const Comm& comm, std::int64_t particles, double height,
+                            const std::vector<std::optional<double>>& floor, int ranks, bool probe) {
+    const MPI_Comm here = communicator(comm);
+    const EstimateOptions options{
+        .particles = particles, .height = height, .floor = floor, .ranks = ranks, .probe = probe};
+    const py::gil_scoped_release free;
+    return estimate(scene, here, options);
+  });
   module.def("analyze", [](const Comm& comm, const std::string& pack) { return analyze(communicator(comm), pack); });
-  module.def("convert", [](const Comm& comm, const std::string& pack, const std::string& format,
-                           const std::string& file, const std::string& trim,
-                           bool force) { return convert(communicator(comm), pack, format, file, trim, force); });
+  module.def("convert",
+             [](const Comm& comm, const std::string& pack, const std::string& format, const std::string& file,
+                const std::string& trim, const std::string& cut, const std::array<int, 2>& copies, bool force) {
+               const MPI_Comm here = communicator(comm);
+               const ConvertOptions options{.file = file, .trim = trim, .cut = cut, .copies = copies, .force = force};
+               const py::gil_scoped_release free;
+               return convert(here, pack, format, options);
+             });
   module.def("rank", [](const Comm& comm) { return rank_in(communicator(comm)); });
   module.def("ranks", [](const Comm& comm) { return ranks_of(communicator(comm)); });
   module.def("end", &end);
@@ -174,6 +190,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("git_id") = std::string(git_id());
   define_scene(module);
   define_packing(module);
+  define_converted(module);
   define_functions(module);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -224,6 +224,21 @@ TEST_F(Packings, ErrorsSayWhere) {
   EXPECT_EQ(failure_of([&] { (void)convert(MPI_COMM_WORLD, "none.hdf", "no_format"); }).code(), 2);
 }
 
+TEST_F(Packings, ASpecimenIsCutOutOfAPackFile) {
+  make_packing(scene_, MPI_COMM_WORLD).write(MPI_COMM_WORLD, folder_ + "/whole.hdf", true);
+  const auto converted = [&](const std::string& cut) {
+    return convert(MPI_COMM_WORLD, folder_ + "/whole.hdf", "csv",
+                   {.file = folder_ + "/part.csv", .cut = cut, .force = true});
+  };
+  const Converted whole = converted(""), part = converted("box:length=0.16,width=0.16,height=0.05");
+  EXPECT_EQ(whole.cut, "");
+  EXPECT_GT(part.particles, 0);
+  EXPECT_LT(part.particles, whole.particles / 2);
+  EXPECT_LT(part.volume, part.cut_fraction * 0.16 * 0.16 * 0.05) << "spheres that the sides cut are not kept";
+  EXPECT_EQ(part.files, std::vector<std::string>{folder_ + "/part.csv"});
+  EXPECT_THROW((void)converted("tube:length=1"), Failure);
+}
+
 TEST_F(Packings, TellsWhatAFewLinesCost) {
   const std::string facts = check(scene_, MPI_COMM_WORLD);
   EXPECT_NE(facts.find("\"most_ranks\""), std::string::npos) << facts;

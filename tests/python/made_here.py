@@ -3,6 +3,7 @@ import ast
 import contextlib
 import gc
 import io
+import json
 import os
 import re
 import shutil
@@ -149,6 +150,8 @@ class Scenes(unittest.TestCase):
         told = packmpi.scene("bed.toml").estimate(particles=1000, ranks=2, probe=False)
         self.assertEqual((told["found"], told["ranks"]), ("height", 2))
         self.assertLess(abs(told["particles"]["value"] - 1000), 200)
+        told = packmpi.scene("bed.toml").estimate(particles=1000, floor=[0.5, None], probe=False)
+        self.assertEqual((told["found"], told["size"][0]), ("floor", 0.5))
 
 
 class Files(unittest.TestCase):
@@ -162,6 +165,27 @@ class Files(unittest.TestCase):
         gc.collect()
         left = {path.name for path in set(Path(".").iterdir()) - before} - {file.name for file in files}
         self.assertEqual(left, set())
+
+    def test_a_specimen_is_cut_out(self):
+        shape, file = "box:length=0.25,width=0.15,height=0.08", "part.csv"
+        part = packmpi.read("bed.hdf").convert("csv", file, cut=shape, force=True)
+        said = subprocess.run([os.environ["PACKMPI_PROGRAM"], "convert", "bed.hdf", "--to", "csv", "--cut", shape, "-o", "by_program.csv", "--force"],
+                              check=True, capture_output=True, text=True).stdout
+        self.assertEqual(list(part), [Path(file)])
+        self.assertEqual(Path(file).read_bytes(), Path("by_program.csv").read_bytes())
+        self.assertIn(f"by_program.csv: {part.particles} particles", said)
+        self.assertIn(f"cut out: {part.cut}; solid fraction {part.cut_fraction:.9f}", said)
+        self.assertTrue(0 < part.particles < packmpi.read("bed.hdf").count)
+        with self.assertRaisesRegex(packmpi.Problem, "periodic"):
+            packmpi.read("bed.hdf").convert("csv", file, copies=(2, 1), force=True)
+
+    def test_a_record_stands_beside_the_page(self):
+        pack = packmpi.run("bed.toml", folder="archived", force=True)
+        page = pack.report(size=150, crate="CC-BY-4.0")
+        record = json.loads((page.parent / "ro-crate-metadata.json").read_text())
+        self.assertIn({"@id": page.name}, record["@graph"][1]["hasPart"])
+        with self.assertRaises(packmpi.Problem):
+            packmpi.run("bed.toml").report("page.html", crate="CC-BY-4.0")
 
     def test_wishes_that_cannot_be(self):
         pack = packmpi.run("bed.toml")

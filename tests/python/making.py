@@ -3,6 +3,7 @@
 usage: making.py FOLDER PROGRAM MPIEXEC FLAG
 The program makes one pack; then on_ranks.py and made_here.py are run by themselves. Exit code 77: a Python package is missing.
 """
+import os
 import shutil
 import subprocess
 import sys
@@ -50,7 +51,7 @@ def main() -> int:
         sys.exit(f"the program ended with {made.returncode}")
     for words in ([sys.executable, HERE / "made_here.py"], *([*launcher, str(n), sys.executable, HERE / "on_ranks.py"] for n in (1, 2, 3))):
         print("$", *map(str, words), flush=True)
-        done = subprocess.run(list(map(str, words)), cwd=folder, check=False)
+        done = subprocess.run(list(map(str, words)), cwd=folder, check=False, env={**os.environ, "PACKMPI_PROGRAM": program})
         if done.returncode != 0:
             return done.returncode
     return 0

@@ -8,7 +8,7 @@ import tempfile
 import tomllib
 import weakref
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from .problem import Problem
 
 if TYPE_CHECKING:   # it takes a third of a second, and packs in memory do not need it
     import h5py
+    from ._core import Converted as CoreConverted
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -51,6 +52,22 @@ def attributes(group: "h5py.Group") -> dict[str, Any]:
 def arrays(group: "h5py.Group") -> dict[str, NDArray[Any]]:
     """All datasets of a group, by name."""
     return {name: data[:] for name, data in group.items()}
+
+
+class Converted(list[Path]):
+    """The files that were written.
+
+    particles      in them
+    volume         of these as spheres [m3]
+    cut            what was cut out, in words; "": nothing
+    cut_fraction   solid fraction of what was cut out, spheres cut by its sides; 0 if nothing was
+    springs        what became of the springs of friction, in words; "": nothing to tell
+    """
+
+    def __init__(self, done: "CoreConverted") -> None:
+        super().__init__(Path(file) for file in done.files)
+        self.particles, self.volume = done.particles, done.volume
+        self.cut, self.cut_fraction, self.springs = done.cut, done.cut_fraction, done.springs
 
 
 class Pack:
@@ -218,34 +235,43 @@ class Pack:
         core.analyze(number_of(self._comm), str(path))
         return json.loads(path.with_suffix(".analysis.json").read_text(encoding="utf-8"))
 
-    def convert(self, format: str, file: Union[str, Path, None] = None, *, trim: str = "none",   # pylint: disable=redefined-builtin
-                force: bool = False) -> list[Path]:
-        """Writes the pack for another code (doc/convert.md). Collective. Returns the files.
+    def convert(self, format: str, file: Union[str, Path, None] = None, *, trim: str = "none", cut: str = "",   # pylint: disable=redefined-builtin
+                copies: Sequence[int] = (1, 1), force: bool = False) -> Converted:
+        """Writes the pack for another code (doc/convert.md). Collective. Returns the list of files, with what there is to tell of them.
 
         format    "lammps", "liggghts", "yade", "csv", ...: `packmpi convert --help` lists them
         file      to write; None: beside the pack's file, with the format's ending. Give it for a pack in memory
         trim      "drop" leaves out what reaches above the target height, "cut" what has its centre there
+        cut       takes a specimen out: "cylinder:diameter=0.15,height=0.3", a box, a sphere, or a closed surface, "part.stl:unit=mm"
+                  (doc/vessels.md): particles wholly inside are kept
+        copies    so many side by side along x and y, periodic axes only
         force     files that exist may be replaced
 
         Raises Problem.
         """
         if file is None and self.path is None:
             raise Problem("this pack is in memory only: give the file to write, or save() it first")
-        done = core.convert(number_of(self._comm), str(self._file()), format, "" if file is None else str(file), trim, force)
-        return [Path(one) for one in done]
+        return Converted(core.convert(number_of(self._comm), str(self._file()), format, "" if file is None else str(file), trim, cut,
+                                      list(copies), force))
 
-    def report(self, file: Union[str, Path, None] = None, *, size: int = 700) -> Path:
+    def report(self, file: Union[str, Path, None] = None, *, size: int = 700, crate: str = "") -> Path:
         """Writes one page on the pack, HTML, with pictures and plots inside (doc/analyze.md). Collective; rank 0 writes it. Needs
         matplotlib and VTK (scripts/setup.sh --render). `file`: None is beside the pack's file; give it for a pack in memory. `size`:
-        width of pictures in pixels, about. Raises Problem."""
+        width of pictures in pixels, about. `crate`: a licence, as "CC-BY-4.0": a record for an archive (RO-Crate) is written beside the
+        pack's file, too (doc/specimens.md). Raises Problem."""
         if file is None and self.path is None:
             raise Problem("this pack is in memory only: give the page to write, or save() it first")
+        if crate and self.path is None:
+            raise Problem("this pack is in memory only: save() it first, the record for an archive stands beside it")
         path = self._file()
         self.analyze()
         page = Path(file) if file is not None else path.with_suffix(".html")
         if core.rank(number_of(self._comm)) == 0:
             from .report import write_page
             write_page(Pack(path), page, pixels=size)
+            if crate:
+                from .crate import write_record
+                write_record(Pack(path), crate)
         return page
 
     @property

@@ -2,7 +2,7 @@
 import json
 import tomllib
 from os import PathLike, fspath
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 from .core import core, number_of
 from .toml import dumps, scalar
@@ -45,18 +45,19 @@ class Scene:
         """
         return json.loads(core.check(self.made, number_of(comm)))
 
-    def estimate(self, *, particles: int = 0, height: float = 0.0, ranks: int = 0, probe: bool = True,
+    def estimate(self, *, particles: int = 0, height: float = 0.0, floor: Sequence[Optional[float]] = (), ranks: int = 0, probe: bool = True,
                  comm: Optional[Any] = None) -> dict[str, Any]:
         """What the scene will take, as `packmpi estimate --json` tells it (doc/estimate.md). Collective over `comm`.
 
         particles    ask for so many: the height is found, or with `height` the floor
         height       ask for this target height [m]
+        floor        ask for these sides [m]; None: this one is open
         ranks        MPI ranks to think of; 0: those of comm
         probe        try how fast this machine is, for a second or two: without it there is no time
 
         Raises SceneError.
         """
-        return json.loads(core.estimate(self.made, number_of(comm), particles, height, ranks, probe))
+        return json.loads(core.estimate(self.made, number_of(comm), particles, height, list(floor), ranks, probe))
 
 
 def scene(source: Source, *, set: Optional[Mapping[str, Any]] = None, seed: Optional[int] = None,   # pylint: disable=redefined-builtin
