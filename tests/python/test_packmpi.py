@@ -21,7 +21,7 @@ except ImportError as error:
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "python"
 sys.path.insert(0, str(FOLDER))
 
-from packmpi import Pack, Problem, __main__ as command, crate, render, sizes, units  # noqa: E402
+from packmpi import Pack, Problem, __main__ as command, crate, plot, render, render_2d, sizes, units, vessel  # noqa: E402
 
 
 def make_pack(path, **attributes):
@@ -118,6 +118,56 @@ class Pictures(unittest.TestCase):
             lines.append(len(words.lines))
         self.assertEqual(lines[-1], 1)
         self.assertGreater(lines[1], 1)
+
+
+class Sections(unittest.TestCase):
+    def pack(self, scene=b"[container]\nboundary = ['wall', 'wall']\n", **attributes):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "cut.hdf"
+            make_pack(path, **{"dimension": 3, "size": [0.5, 0.4, 0.2], **attributes})
+            with h5py.File(path, "a") as file:
+                file["particles/position"][:] = [[0.1, 0.26, 0.1], [0.3, 0.04, 0.2]]   # the plane is at 0.2
+                file["provenance"].attrs["effective_input"] = np.bytes_(scene)
+            return Pack(path)
+
+    def test_circles_of_spheres_that_the_plane_cuts(self):
+        cut = render_2d.cut_middle(self.pack())
+        np.testing.assert_array_equal(cut.which, [0])
+        np.testing.assert_allclose(cut.places, [[0.1, 0.1]])
+        np.testing.assert_allclose(cut.radii, [0.08])
+
+    def test_what_leaves_on_one_side_enters_on_the_other(self):
+        pack = self.pack(b"[container]\nboundary = ['periodic', 'wall']\n")
+        pack.position[0, 0] = 0.07
+        cut = render_2d.cut_middle(pack)
+        np.testing.assert_array_equal(cut.which, [0, 0])
+        np.testing.assert_allclose(cut.places, [[0.07, 0.1], [0.57, 0.1]])
+
+    def test_walls_stand_where_they_are(self):
+        for words, wanted in (({"shape": "cylinder"}, {0.0, 0.5, 0.25}), ({"shape": "annulus", "inner_diameter": 0.2}, {0.0, 0.15, 0.35, 0.5}),
+                              ({"shape": "frustum", "bottom_diameter": 0.3, "top_diameter": 0.5}, {0.0, 0.1, 0.25, 0.4, 0.5}),
+                              ({"shape": "sphere"}, {0.0, 0.25, 0.5})):
+            pack = self.pack(size=[0.5, 0.5, 0.5], **words)
+            sheet = render_2d.new_sheet(pack, 300)
+            render_2d.put_vessel(sheet, pack)
+            ends = {round(float(x), 6) for line in sheet.axes.lines for x in (min(line.get_xdata()), max(line.get_xdata()))}
+            render_2d.plt.close(sheet.figure)
+            self.assertEqual(ends, wanted, words)
+
+    def test_of_triangles_the_lines_in_the_plane(self):
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
+        np.testing.assert_allclose(np.sort(vessel.section(points, np.array([[0, 1, 2]]), 0.5, 1)[0], axis=0), [[0.0, 0.5, 0.0], [0.5, 0.5, 0.5]])
+
+
+    def test_rings_at_the_walls_of_a_vessel(self):
+        pack = self.pack(shape="annulus", inner_diameter=0.2)
+        profile = {"from": 0.0, "width": 0.025, "values": [0.1, 0.5, 0.7]}
+        figure = plot.radial(pack, {"radial_profile": {"from_wall": profile, "from_inner_wall": profile, "core": {"solid_fraction": 0.6}}})
+        axes, = figure.axes
+        self.assertEqual([one.get_text() for one in axes.get_legend().get_texts()], ["from the outer wall", "from the inner wall", "of the core, away from walls"])
+        np.testing.assert_allclose(axes.patches[0].get_data().edges, [0.0, 0.1, 0.2, 0.3])   # mean diameters of 0.25
+        plot.plt.close(figure)
+        self.assertIsNone(plot.radial(pack, {}))
 
 
 class Crate(unittest.TestCase):

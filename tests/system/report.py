@@ -40,6 +40,7 @@ CONTRAST = """(() => {
   }).concat(paper);
 })()"""
 
+SECTIONS = ("grading",)   # discs are their own
 PLOTS = {"grading": 8, "periodic_2d": 6}   # both are too small for g(r), discs are of one size
 VIEW = """(() => {
   const view = document.getElementById('view');
@@ -185,7 +186,7 @@ def main():
     with tempfile.TemporaryDirectory() as profile, browser.Browser(profile) as page:
         check_watcher(page)
         for name in SCENES:
-            check_page(page, folder / f"{name}.html", (2 if can_draw[name] else 0) + PLOTS[name])
+            check_page(page, folder / f"{name}.html", (2 if can_draw[name] else 0) + (name in SECTIONS) + PLOTS[name])
     print(json.dumps(problems, indent=1, ensure_ascii=False) if problems else "two pages looked at, light and dark, wide and narrow")
     return 1 if problems else 0
 

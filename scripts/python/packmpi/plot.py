@@ -1,6 +1,6 @@
 """Plots of a pack: density profile, composition over the height, target and achieved sizes, pair distribution, how it settled.
 
-usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density composition lateral segregation sizes ...] [--program packmpi]
+usage: packmpi plot PACK.hdf [-o FOLDER] [--format png|svg] [--only density composition lateral radial segregation sizes ...] [--program packmpi]
 
 Writes NAME.density.png and so on beside the pack, or in FOLDER. The numbers are those of `packmpi analyze`, which is run
 first if NAME.analysis.json is older than the pack or not there; the history is NAME.steps.csv, and is left out if that is not
@@ -93,6 +93,24 @@ def lateral(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
     axes.axhline(pack.phi_bulk, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label=r"$\phi_\mathrm{bulk}$")
     legend_above(axes)
     axes.set(xlabel=f"place between the sides [{unit}]", ylabel="solid fraction", ylim=(0.0, None))
+    return figure
+
+
+def radial(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
+    """Solid fraction by the distance from the side walls of a round vessel; None in others."""
+    found = analysis.get("radial_profile")
+    if not found:
+        return None
+    figure, axes = new_figure()
+    diameter = 2.0 * float(pack.radius.mean())
+    for name, words, colour in (("from_wall", "from the outer wall" if "from_inner_wall" in found else "from the wall", ACHIEVED), ("from_inner_wall", "from the inner wall", OTHER)):
+        if name in found:
+            edges, values = staircase(found[name])
+            axes.stairs(values, edges / diameter, color=colour, linewidth=1.5, baseline=None, label=words)
+    if found["core"]["solid_fraction"] > 0.0:
+        axes.axhline(found["core"]["solid_fraction"], color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="of the core, away from walls")
+    legend_above(axes)
+    axes.set(xlabel="distance from the wall [mean diameters]", ylabel="solid fraction", xlim=(0.0, None), ylim=(0.0, None))
     return figure
 
 
@@ -270,7 +288,7 @@ def rose(pack: Pack, _: dict[str, Any]) -> Union[Figure, None]:
     return figure
 
 
-PLOTS = {"density": density, "composition": composition, "lateral": lateral, "segregation": segregation, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
+PLOTS = {"density": density, "composition": composition, "lateral": lateral, "radial": radial, "segregation": segregation, "sizes": sizes, "coordination": coordination, "forces": forces, "rose": rose, "pairs": pairs,
          "settling": settling}
 
 

@@ -1,8 +1,8 @@
 """A picture of a pack: spheres in 3D, discs in 2D, coloured by a property, with the container and the target height.
 
-usage: packmpi render PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed|component ...] [--size pixels] [--no-chains]
+usage: packmpi render PACK.hdf [-o picture.png] [--color radius|layer|contacts|speed|component ...] [--size pixels] [--no-chains] [--section]
 
-3D is drawn by VTK on a (virtual) X screen, 2D by matplotlib. Several colours make several pictures, picture.radius.png and
+3D is drawn by VTK on a (virtual) X screen, 2D by matplotlib, and so is the section through the middle of a 3D pack (--section). Several colours make several pictures, picture.radius.png and
 so on. A 2D pack with /contacts (output.contacts = true) gets its force chains, lines as thick as the normal forces; of several
 pictures, the first.
 """
@@ -20,7 +20,6 @@ matplotlib.use("Agg")
 from matplotlib import colors, pyplot as plt  # noqa: E402  (after the choice of the backend)
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
-from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
@@ -167,71 +166,23 @@ def draw_3d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     plt.close(figure)
 
 
-def chain_lines(pack: Pack, axes: Axes, points: float) -> float:
-    """Lines between touching discs, as thick as the normal force: `points` for the mean one, which is returned [N]."""
-    assert pack.pairs is not None and pack.forces is not None   # who calls this has looked
-    first, second = pack.position[pack.pairs[:, 0], :2], pack.position[pack.pairs[:, 1], :2]
-    normal = second - first
-    near = np.abs(normal[:, 0]) < 0.5 * pack.size[0]  # not those across a periodic side
-    length = np.linalg.norm(normal, axis=1)
-    force = np.abs(np.einsum("ij,ij->i", pack.forces[:, :2], normal)) / np.maximum(length, 1e-300)
-    typical = force[near].mean() if near.any() else 1.0
-    width = points * np.minimum(0.9 * force[near] / max(typical, 1e-300), 5.0)
-    lines = np.stack([first[near], second[near]], axis=1)
-    axes.add_collection(LineCollection(lines, linewidths=width, colors="#101010", capstyle="round", zorder=3))
-    return typical
-
-
-def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int, chains: bool) -> None:
-    """A picture of discs, PNG, `pixels` wide, with force chains if they are wanted and the pack has contacts."""
-    width, target = pack.size
-    top = pack.top()
-    dpi, strip, rim = 100, 1.15, 0.30  # inches for the colour bar and around the picture
-    inches = pixels / dpi - strip - rim
-    high = inches * top / width
-    words = Caption(pack, pixels, round(rim * dpi))
-    across, up = pixels / dpi, high + 1.1 * rim + words.height / dpi
-    figure = plt.figure(figsize=(across, up), dpi=dpi)
-    axes = figure.add_axes([rim / across, rim / up, inches / across, high / up])
-    diameter = 2.0 * pack.radius
-    show = chains and pack.pairs is not None and len(pack.pairs) > 0
-    if show:
-        colouring.fade()
-    points = 72.0 * inches * diameter.mean() / width if pack.count else 1.0  # a mean diameter in points
-    axes.add_collection(EllipseCollection(
-        diameter, diameter, np.zeros(pack.count), units="xy", facecolors=colouring.rgba(), edgecolors=INK,
-        linewidths=min(0.6, 0.04 * points), offsets=pack.position[:, :2], transOffset=axes.transData, zorder=2))
-    note = "red: target height" if pack.lid is None else LID_WORDS
-    if show:
-        note += f";  lines: contact forces, mean {chain_lines(pack, axes, 0.1 * points):.2g} N"
-    axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)
-    if pack.lid is None:
-        axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
-    else:
-        axes.plot([0, width], [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=False, zorder=5)
-    axes.set_xlim(0.0, width)
-    axes.set_ylim(0.0, top)
-    axes.axis("off")
-    bar = [1.0 - (strip - 0.22) / across, (rim + 0.08 * high) / up, 0.16 / across, 0.84 * high / up]
-    colouring.bar(figure, figure.add_axes(bar))
-    words.draw(figure)
-    figure.text(rim / across, 0.08 / up, note, fontsize=9, color=TARGET if pack.lid is None else LID)
-    figure.savefig(path, dpi=dpi, facecolor=BACKGROUND)
-    plt.close(figure)
-
-
 def pictures_of(pack: Union[str, Path], pictures: Iterable[Path], *options: Any) -> str:
-    """Draws a pack in a process of its own (pictures in 3D may start it again under a virtual screen), with few colours: a
-    third of the bytes. `pictures` are the files that must then be there, `options` those of packmpi render. What went wrong, or
+    """Draws a pack in a process of its own (pictures in 3D may start it again under a virtual screen), with few colours.
+    `pictures` are the files that must then be there, `options` those of packmpi render. What went wrong, or
     nothing."""
     command = [sys.executable, Path(__file__).parent / "__main__.py", "render", pack, *options]
     done = subprocess.run([str(word) for word in command], text=True, capture_output=True, check=False)
     if done.returncode != 0:
         return done.stderr.strip() or f"packmpi render ended with code {done.returncode}"
-    from PIL import Image   # comes with matplotlib
     for picture in pictures:
-        Image.open(picture).quantize(200).save(picture, optimize=True)
+        use_few_colours(picture)
     return ""
+
+
+def use_few_colours(picture: Path) -> None:
+    """A third of the bytes."""
+    from PIL import Image   # comes with matplotlib
+    Image.open(picture).quantize(200).save(picture, optimize=True)
 
 
 def parse(words: list[str]) -> argparse.Namespace:
@@ -243,6 +194,7 @@ def parse(words: list[str]) -> argparse.Namespace:
                         help="what the colours show (default: radius, or layer if all radii are equal)")
     parser.add_argument("--size", type=int, default=1000, help="width in pixels, about (default 1000)")
     parser.add_argument("--no-chains", action="store_true", help="2D: leave out the force chains")
+    parser.add_argument("--section", action="store_true", help="3D: the section through the middle, across y, instead of the view from outside")
     parser.add_argument("--program", help=argparse.SUPPRESS)   # of all three tools; this one needs none
     options = parser.parse_args(words)
     if not 100 <= options.size <= 8000:
@@ -255,19 +207,23 @@ def main(words: list[str]) -> None:
     options = parse(words)
     path = options.output or os.path.splitext(options.pack)[0] + ".png"
     pack = Pack(options.pack)
-    if pack.dimension == 3:
+    outside = pack.dimension == 3 and not options.section
+    if outside:
         from . import render_3d
         render_3d.use_virtual_screen()
+    from . import render_2d
     stem, ending = os.path.splitext(path)
     for color in options.color:
         colouring = Colouring(pack, color)
         if len(options.color) > 1:
             path = f"{stem}.{color}{ending}"
         try:
-            if pack.dimension == 3:
+            if outside:
                 draw_3d(pack, colouring, path, options.size)
+            elif pack.dimension == 3:
+                render_2d.draw_section(pack, colouring, path, options.size)
             else:
-                draw_2d(pack, colouring, path, options.size, not options.no_chains and color == options.color[0])
+                render_2d.draw_2d(pack, colouring, path, options.size, not options.no_chains and color == options.color[0])
         except OSError as error:
             raise Problem(f"cannot write {path}: {error}") from error
         print(f"{path}: {pack.count} particles by {colouring.what}")

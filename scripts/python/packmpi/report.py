@@ -18,7 +18,8 @@ from . import plot
 from .crate import write_record
 from .problem import Problem
 from .pack import Pack
-from .render import container_size, pictures_of
+from .render import Colouring, container_size, pictures_of, use_few_colours
+from .render_2d import draw_section
 from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
 from .units import length_unit
 from .view import script_source, view
@@ -98,6 +99,7 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
              (length(made["height"]), f"high; target {length(pack.size[-1])}"),
              (f"{100.0 * analysis['contacts']['rattlers']:.1f} %", "rattlers"),
              (f"{0.001 * made['stress_on_lid']:.4g} kPa", "stress on the lid") if made.get("stress_on_lid") else
+             (f"{pack.rest['support']:.3f}", "of the weight borne by the walls") if pack.shape == "mesh" and "support" in pack.rest else
              (f"{made['floor_force'] / made['weight']:.3f}" if made["weight"] else "–", "of the weight on the floor")]
     drawn = "".join(f'<div class="tile"><b>{value}</b><span>{words}</span></div>' for value, words in tiles)
     return f'<div class="tiles">{drawn}</div>'
@@ -110,13 +112,17 @@ def warning(pack: Pack) -> str:
         words.append(f'The pack is lower than its target: {length(pack.summary["height"])} of {length(pack.size[-1])}, stopped by '
                      f'{html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the target height are too small.')
     words += [html.escape(line) for line in pack.rest.get("missed", "").splitlines() if not line.startswith("container.size:")]
-    return "".join(f'<p class="warning" role="alert">{line}</p>' for line in words)
+    return "".join(f'<p class="warning" role="alert"><b class="bad">Missed:</b> {line}</p>' for line in words)
+
+
+COLOURED = {"component": "Coloured by component", "radius": "Coloured by size", "layer": "Coloured by layer of insertion"}
 
 
 def pictures(pack: Pack, folder: Path, pixels: int) -> str:
-    """The pack from outside: sizes, or layers if they are equal; and contacts. Discs with their force chains."""
-    first, words = ("radius", "Coloured by size") if np.ptp(pack.radius) > 0.0 else ("layer", "Coloured by layer of insertion")
-    notes = ""
+    """The pack from outside: components, sizes, or layers if they are equal; and contacts. Of spheres the section through the middle, too; discs
+    with their force chains."""
+    first = Colouring(pack).what
+    words, notes = COLOURED[first], ""
     if pack.dimension == 2 and pack.pairs is not None:
         words += ", with force chains: lines as thick as the contact forces"
     elif pack.dimension == 2:
@@ -125,7 +131,12 @@ def pictures(pack: Pack, folder: Path, pixels: int) -> str:
     assert pack.path is not None   # of a pack that has a file
     wrong = pictures_of(pack.path, shown, "-o", folder / "picture.png", "--size", pixels, "--color", first, "contacts")
     if wrong:
-        return f'<p class="note">No pictures: {html.escape(wrong)}</p>'
+        notes, shown = f'<p class="note">No pictures: {html.escape(wrong)}</p>', {}
+    if pack.dimension == 3:
+        path = folder / "picture.section.png"
+        draw_section(pack, Colouring(pack), path, pixels)
+        use_few_colours(path)
+        shown[path] = f"The section through the middle: circles as the plane across y cuts the spheres. {COLOURED[first]}"
     drawn = "".join(f'<figure class="photo">{inline(path, "png", words)}<figcaption>{words}.</figcaption></figure>'
                     for path, words in shown.items())
     return f'<div class="pair">{drawn}</div>{notes}'
@@ -135,6 +146,7 @@ CAPTIONS = {
     "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
     "composition": "What the solid is of, over the height.",
     "lateral": "Solid fraction of the bulk from one side to the other; flat walls order the nearest layers, and the profile swings there.",
+    "radial": "Solid fraction by the distance from the wall, around which spheres stand in rings.",
     "segregation": "Mean radius over the height: level where sizes are not sorted by it. Steps beyond chance need many particles in a slab.",
     "sizes": "Target sizes (dashed) and achieved ones, as sieves would show them.",
     "pairs": "Pair distribution around particles away from walls; 1 where places do not know of each other.",
@@ -144,7 +156,7 @@ CAPTIONS = {
     "settling": "How the layers settled; energies are those of the particles that move."}
 
 MISSING = {
-    "density": "No density profile.", "composition": "One component.", "lateral": "No lateral profile.", "segregation": "All radii are equal, or the pack is too low: no profile of sizes.", "sizes": "All radii are equal: no size curves.",
+    "density": "No density profile.", "composition": "One component.", "radial": "No radial profile.", "lateral": "No lateral profile.", "segregation": "All radii are equal, or the pack is too low: no profile of sizes.", "sizes": "All radii are equal: no size curves.",
     "pairs": "The pack is too small for a pair distribution.",
     "coordination": "No particle touches another.", "forces": "Too few contacts for a distribution of forces.",
     "rose": "No contact orientations: the pack was written without output.contacts = true, or has too few contacts.",
@@ -155,8 +167,10 @@ def plots(pack: Pack, analysis: dict[str, Any], folder: Path) -> str:
     """All plots that there are, and why the others are not."""
     drawn, notes = [], []
     for name, words in CAPTIONS.items():
-        if name == "composition" and not pack.components:
+        if name == "composition" and not pack.components or name == "radial" and "radial_profile" not in analysis:
             continue
+        if name == "sizes" and pack.components:
+            words = "Sizes of each component, as sieves would show them."
         path = folder / f"{name}.svg"
         if plot.draw(name, pack, analysis, path):
             adapt(path)

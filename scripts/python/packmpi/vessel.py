@@ -53,15 +53,15 @@ def mesh_edges(points: Floats, triangles: Integers, least: float = 10.0) -> list
     return [(points[a], points[b]) for (a, b), both in across.items() if len(both) == 2 and normals[both[0]] @ normals[both[1]] < limit]
 
 
-def section(points: Floats, triangles: Integers, height: float) -> list[tuple[Floats, Floats]]:
-    """The lines in which a mesh cuts a height."""
+def section(points: Floats, triangles: Integers, place: float, axis: int = 2) -> list[tuple[Floats, Floats]]:
+    """The lines in which a mesh cuts the plane across an axis at a place; as it is, a height."""
     found = []
     for triangle in triangles:
         cut = []
         for k in range(3):
             a, b = points[triangle[k]], points[triangle[(k + 1) % 3]]
-            if (a[2] < height) != (b[2] < height):
-                cut.append(a + (height - a[2]) / (b[2] - a[2]) * (b - a))
+            if (a[axis] < place) != (b[axis] < place):
+                cut.append(a + (place - a[axis]) / (b[axis] - a[axis]) * (b - a))
         if len(cut) == 2:
             found.append((cut[0], cut[1]))
     return found

@@ -29,6 +29,8 @@ def fields_of(pack: Pack) -> list[tuple[dict[str, Any], Floats]]:
     """What spheres may be coloured by: name, unit, ends of the scale, and the values."""
     scale, unit = length_unit(float(pack.radius.max()))
     fields: list[tuple[str, str, Any]] = [("radius", unit, scale * pack.radius)] if np.ptp(pack.radius) > 0.0 else []
+    if pack.components:
+        fields.insert(0, ("component " + ", ".join(f"{k}: {name}" for k, name in enumerate(pack.components)), "", pack.component))
     fields += [("contacts", "", pack.contacts), ("layer of insertion", "", pack.layer + 1)]
     scale, unit = length_unit(float(pack.size[-1]))
     fields.append(("height", unit, scale * pack.position[:, 2]))
