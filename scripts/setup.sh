@@ -7,7 +7,7 @@
 #   --render  also VTK and a virtual display, for pictures of packs in 3D
 #   --report  also what --render brings, and Chromium, in which the test of packmpi report reads its page
 #   --notebooks also what runs Jupyter's notebooks, of doc/notebooks
-#   --site    also MkDocs, for the documentation as a site
+#   --site    also MkDocs and MathJax, for the documentation as a site
 #   --checks  also clang-tidy, clang-format and mypy, for scripts/dev/check.sh
 #   --fuzz    also clang with libFuzzer, for scripts/dev/fuzz.sh
 #   --valgrind also valgrind, for scripts/dev/valgrind.sh
@@ -24,7 +24,7 @@ for option in "$@"; do
     --render) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth) ;;
     --report) packages+=(python3 python3-h5py python3-matplotlib python3-vtk9 xvfb xauth chromium fonts-dejavu-core) ;;
     --notebooks) packages+=(python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib) ;;
-    --site) packages+=(mkdocs mkdocs-material) ;;
+    --site) packages+=(mkdocs mkdocs-material python3-pymdownx libjs-mathjax) ;;
     --checks) packages+=(clang clang-tidy clang-format mypy python3 python3-numpy) ;;
     --fuzz) packages+=(clang libclang-rt-14-dev llvm) ;;
     --valgrind) packages+=(valgrind) ;;

@@ -14,6 +14,12 @@ for page in $(grep -oE '\]\(doc/[^)#]*' "$root/README.md" | cut -c3-); do   # mk
 done
 built=$(realpath -m "${1:-$root/build/site}")
 mkdocs build --strict --quiet --clean -f "$root/scripts/dev/site.yml" -d "$built"
+# MathJax beside the pages, the part of it that they use: nothing is fetched, from the disk either.
+mathjax=/usr/share/javascript/mathjax
+for part in MathJax.js config/TeX-AMS_SVG.js extensions jax/element jax/input/TeX jax/output/SVG/{autoload,config.js,jax.js,fonts/TeX}; do
+  mkdir -p "$built/mathjax/$(dirname "$part")"
+  cp -rL "$mathjax/$part" "$built/mathjax/$part"
+done
 # The theme's index again, for pages from the disk (scripts/dev/site/main.html): a script may be read there, JSON may not.
 python3 -c 'import json, sys; json.dump(json.load(open(sys.argv[1]))["docs"], sys.stdout)' "$built/search/search_index.json" |
   { printf 'window.indexOfDisk = '; cat; } >"$built/search/index_of_disk.js"

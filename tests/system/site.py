@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The documentation as a site, opened from the disk in a real browser: formulas are whole, wide tables scroll, search finds.
+"""The documentation as a site, opened from the disk in a real browser: formulas are typeset, wide tables scroll, search finds.
 
 usage: site.py ROOT FOLDER
 Exit code 77: Chromium is missing (scripts/setup.sh --report).
@@ -11,7 +11,17 @@ import tempfile
 
 import browser
 
-FORMULAS = ["r* = r_i", "m* = m_i", "1/E* = (1 - nu^2) / E", "2.87 [m*^2 / (r* E*^2 v)]^(1/5)", "d* = 2 xi sqrt(2 E*) sqrt(m* sqrt(r* delta))"]
+# Formulas, as TeX, that must be on a page and be drawn.
+FORMULAS = {"theory": [r"r^\ast = r_i", r"m^\ast = m_i", r"1/E^\ast = (1 - \nu^2) / E", r"2.87 \left[ \frac{m^{\ast 2}}{r^\ast E^{\ast 2} v} \right]^{1/5}",
+                       r"d^\ast = 2 \xi \sqrt{2 E^\ast} \sqrt{m^\ast \sqrt{r^\ast \delta}}"],
+            "howto_confinement": [r"M = K + \tfrac43 G"], "notation": [r"\sqrt{m^\ast \sqrt{r^\ast \delta}}"]}
+# When MathJax is done: of each formula its TeX, what is wrong with it, and how wide and high it is drawn.
+TYPESET = """new Promise(done => {
+  const shape = one => document.getElementById(one.inputID + '-Frame').querySelector('svg').getBoundingClientRect();
+  const all = () => done(MathJax.Hub.getAllJax().map(one => [one.originalText, one.texError ? one.texError.message : '', shape(one).width, shape(one).height]));
+  const wait = () => window.MathJax && MathJax.Hub && MathJax.isReady ? MathJax.Hub.Queue(all) : setTimeout(wait, 20);
+  wait();
+})"""
 SEARCH = """(words => {
   const field = document.querySelector('.disk-search input');
   field.value = words;
@@ -35,11 +45,28 @@ def expect(condition, words):
         problems.append(words)
 
 
+def check_formulas(page, site):
+    """All are typeset, from the disk, and the page is no wider by them."""
+    for name, wanted in FORMULAS.items():
+        page.open((site / f"{name}.html").as_uri())
+        drawn = page.value(TYPESET)
+        written = page.value("""document.querySelectorAll('script[type^="math/tex"]').length""")
+        expect(len(drawn) == written, f"{name}.html: {len(drawn)} of {written} formulas are typeset")
+        for formula in wanted:
+            expect(any(formula in tex for tex, *_ in drawn), f"{name}.html has lost {formula}")
+        for tex, wrong, width, height in drawn:
+            expect(not wrong and width > 3.0 and height > 3.0, f"{name}.html: {tex} is drawn {width} x {height} {wrong}")
+        left = page.value("[...document.querySelectorAll('article :not(script, style, code, pre)')].flatMap(one => [...one.childNodes]).filter(one => one.nodeType === 3 && /\\$|\\\\[a-z]{2}/.test(one.data)).map(one => one.data)")
+        expect(not left, f"{name}.html has TeX as text: {left}")
+        wide = page.value("document.documentElement.scrollWidth")
+        expect(wide <= WIDTH, f"{name}.html is {wide} pixels wide in a window of {WIDTH}")
+        fetched = [one for one in page.requests if not one.startswith(("file:", "data:"))]
+        expect(not fetched, f"{name}.html asks for {fetched}")
+
+
 def check(page, site):
     page.look(WIDTH)
-    page.open((site / "theory.html").as_uri())
-    for formula in FORMULAS:
-        expect(page.value(f"document.body.textContent.includes({formula!r})"), f"theory.html has lost {formula}")
+    check_formulas(page, site)
     page.open((site / "performance.html").as_uri())
     wide = page.value("document.documentElement.scrollWidth")
     expect(wide <= WIDTH, f"performance.html is {wide} pixels wide in a window of {WIDTH}")
@@ -65,7 +92,7 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as profile, browser.Browser(profile) as page:
         check(page, site)
-    print("\n".join(problems) or "five pages looked at")
+    print("\n".join(problems) or "seven pages looked at")
     return 1 if problems else 0
 
 
