@@ -15,6 +15,7 @@ import threading
 import time
 import tomllib
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -186,6 +187,14 @@ class Files(unittest.TestCase):
         self.assertIn({"@id": page.name}, record["@graph"][1]["hasPart"])
         with self.assertRaises(packmpi.Problem):
             packmpi.run("bed.toml").report("page.html", crate="CC-BY-4.0")
+
+    def test_what_a_report_lacks_is_said(self):
+        drawing = {name: None for name in sys.modules if name.split(".")[0] == "matplotlib"} | {"matplotlib": None}
+        with unittest.mock.patch.dict(sys.modules, drawing):
+            for name in ("report", "plot", "render", "render_2d"):
+                sys.modules.pop(f"packmpi.{name}", None)
+            with self.assertRaisesRegex(packmpi.Problem, "apt-get install python3-matplotlib"):
+                packmpi.read("bed.hdf").report("none.html")
 
     def test_wishes_that_cannot_be(self):
         pack = packmpi.run("bed.toml")

@@ -36,7 +36,9 @@ COMMANDS = {
     "mpirun -n 2 build/packmpi input/hopper.toml": "--set layers.maximum=1 " + SMALL + " || test $? = 3",   # that is one layer
     "packmpi render hopper.hdf": "--size 200",
     "packmpi convert hopper.hdf --to yade": "",
-    "packmpi render pebbles.hdf": "--size 200",
+    "packmpi plot pebbles.hdf --only radial lateral": "",
+    "packmpi render pebbles.hdf --section -o section.png": "--size 200",
+    "packmpi report pebbles.hdf": "--size 150",
     "packmpi analyze pebbles.hdf": "",
     "packmpi convert pebbles.hdf --to lammps": "",
     "packmpi convert pebbles.hdf --to lammps --cut input/hopper.stl:unit=mm,x=300mm,y=300mm,z=450mm -o part.data": "",
@@ -64,6 +66,20 @@ COMMANDS = {
     "packmpi input/confined.toml --set target.solid_fraction=0.62 -o filled": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi input/confined.toml --set target.solid_fraction=0.62 --set 'target.state=\"confined\"' -o under": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi convert specimen/confined.hdf --to lammps": "",
+    "packmpi input/confined.toml --set target.solid_fraction=0.62 --set 'target.state=\"confined\"' -o triaxial":
+        ("--set target.solid_fraction=0.62 --set 'target.state=\"confined\"'", "--set container.size=[0.08,0.08,0.03] --quiet"),   # with the target: -o under
+    "packmpi convert triaxial/confined.hdf --to lammps": "",
+    "cd triaxial": "",
+    "lmp -in ../doc/lammps/compress.in -var squeeze 20000": ("-var squeeze 20000", "-var squeeze 20 -screen none"),
+    "packmpi input/quickstart.toml -o handover --set rest.kinetic_energy=1e-10 --set rest.unbalanced_force=1e-4":
+        ("--set rest.kinetic_energy=1e-10 --set rest.unbalanced_force=1e-4", SMALL + " --set container.size=[0.3,0.3,0.2]"),
+    "packmpi convert handover/quickstart.hdf --to lammps": "",
+    "packmpi convert handover/quickstart.hdf --to liggghts": "",
+    "packmpi convert handover/quickstart.hdf --to yade": "",
+    "cd handover": "",
+    "lmp -in quickstart.lammps.in -var steps 10000": ("10000", "2 -screen none"),
+    "liggghts -in quickstart.liggghts.in -var steps 10000": ("10000", "2 -screen none"),
+    "PACK_STEPS=10000 yade -n -x quickstart.yade.py": ("10000", "2"),
     "lmp -in specimen/confined.lammps.in -var data specimen/confined.lammps.data -var steps 10000": ("-var steps 10000", "-var steps 10 -var holding 10 -screen none"),
     "packmpi check input/powder.toml": "",
     "packmpi estimate input/powder.toml --no-probe": "",
@@ -84,9 +100,9 @@ COMMANDS = {
     "scripts/study/figures.py": "--only 4 --size 200 --images made --set layers.duration=0.01",
 }
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
-NEEDS = {"packmpi render": "vtk", "lmp ": "lmp"}       # passed over without it
+NEEDS = {"packmpi render": "vtk", "lmp ": "lmp", "liggghts -in": "liggghts", "yade -n": "yade"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
-          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "part/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
+          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.radial.png", "handover/quickstart.yade.springs", "triaxial/confined.lammps.data", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "part/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "ro-crate-metadata.json", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew
@@ -189,7 +205,7 @@ def main():
     problems.extend(f"a command that is tested is on no page: {line}" for line in COMMANDS if not any(line in block for block in every))
     make_tree(root, build, folder)
     check_cleanliness(folder)
-    installed = {"vtk": has("vtk") and shutil.which("xvfb-run") is not None, "lmp": shutil.which("lmp") is not None}
+    installed = {"vtk": has("vtk") and shutil.which("xvfb-run") is not None, **{name: shutil.which(name) is not None for name in ("lmp", "liggghts", "yade")}}
     passed_over = {line for line in COMMANDS for word, what in NEEDS.items() if word in line and not installed[what]}
     for line in passed_over:
         print(f"passed over, what it needs is not installed: {line}")

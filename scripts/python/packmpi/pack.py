@@ -267,7 +267,11 @@ class Pack:
         self.analyze()
         page = Path(file) if file is not None else path.with_suffix(".html")
         if core.rank(number_of(self._comm)) == 0:
-            from .report import write_page
+            try:
+                from .report import write_page
+            except ImportError as error:
+                from .__main__ import missing
+                raise Problem(missing(error)) from error
             write_page(Pack(path), page, pixels=size)
             if crate:
                 from .crate import write_record
