@@ -14,7 +14,7 @@
 
 namespace packmpi::input {
 
-enum class VesselShape { box, cylinder, frustum, sphere, annulus, mesh };
+enum class VesselShape { box, cylinder, frustum, sphere, annulus, prism, mesh };
 enum class Boundary { wall, periodic };
 enum class SizeDistribution {
   equal,
@@ -40,12 +40,16 @@ enum class WallStiffness { rigid, material };
 enum class StopRule { duration, settled };
 enum class Decomposition { slab, pencil, metis };
 
+/// Points in two numbers. Of a grading [diameter in m, percent passing], ascending once they have been read.
+using Curve = std::vector<std::array<double, 2>>;
+
 struct Container {
   int dimension = 3;  ///< 2 or 3
   VesselShape shape = VesselShape::box;
   double diameter = 0.0, height = 0.0;  ///< [m] inside, and the desired height H_d: of vessels that are no box
   double bottom_diameter = 0.0, top_diameter = 0.0;  ///< [m] of a frustum, at the floor and at H_d
   double inner_diameter = 0.0;                       ///< [m] of an annulus
+  Curve polygon;           ///< [m] of a prism, the corners of its section; it is a mesh once it has been read
   std::string file, unit;  ///< of a mesh: STL or OBJ beside the scene, and its unit; "" and "m" once it has been read
   std::string surface;     ///< of a mesh: the lines of an OBJ file [m]; what the file has, once it has been read
   std::shared_ptr<const mesh::Surface> mesh;  ///< made of them, once they have been read
@@ -53,9 +57,6 @@ struct Container {
                                    ///< vessels than a box: what is around them, once the scene has been read
   std::vector<Boundary> boundary;  ///< one per lateral axis; of other vessels than a box: walls
 };
-
-/// Points [diameter in m, percent passing], ascending once they have been read.
-using Curve = std::vector<std::array<double, 2>>;
 
 struct Radius {
   SizeDistribution distribution = SizeDistribution::equal;

@@ -37,10 +37,67 @@ void move_to_origin(std::vector<mesh::Corners>& triangles, double unit) {
   }
 }
 
+/// An upright prism over a convex polygon, of corners that go round anticlockwise: floor and lid, and its sides.
+std::vector<mesh::Corners> prism_over(const Curve& corners, double height) {
+  const auto at = [&](std::size_t k, double z) {
+    const auto& [x, y] = corners[k % corners.size()];
+    return Vec3{x, y, z};
+  };
+  std::vector<mesh::Corners> triangles;
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+    triangles.push_back({at(0, 0.0), at(k + 1, 0.0), at(k, 0.0)});
+    triangles.push_back({at(0, height), at(k, height), at(k + 1, height)});
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    triangles.push_back({at(k, 0.0), at(k + 1, 0.0), at(k + 1, height)});
+    triangles.push_back({at(k, 0.0), at(k + 1, height), at(k, height)});
+  }
+  return triangles;
+}
+
+/// Is every corner to the left of every side but its ends? Only of a convex polygon that goes round once,
+/// anticlockwise.
+bool is_convex(const Curve& corners) {
+  const std::size_t n = corners.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto &a = corners[k], &b = corners[(k + 1) % n];
+    for (std::size_t j = 2; j < n; ++j) {
+      const auto& c = corners[(k + j) % n];
+      if (!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0)) return false;
+    }
+  }
+  return n >= 3;
+}
+
+/// A prism becomes the mesh that it is.
+void take_prism(const document::Document& document, Container& c) {
+  constexpr std::string_view key = "container.polygon";
+  constexpr std::size_t most = 1000;
+  Curve corners = c.polygon;
+  if (corners.size() > 2 && corners.size() <= most && !is_convex(corners)) std::ranges::reverse(corners);
+  if (corners.size() > most || !is_convex(corners)) {
+    document::fail(
+        document.place(key), key,
+        "is no convex polygon of 3 to 1000 corners that go round once, each of which turns; draw other rooms "
+        "in a CAD program, for shape = \"mesh\"");
+  }
+  std::vector<mesh::Corners> triangles = prism_over(corners, c.height);
+  move_to_origin(triangles, 1.0);
+  try {
+    c.surface = mesh::obj_text(mesh::Shell(mesh::close(triangles, "the prism")));
+  } catch (const Error& error) {
+    document::fail(document.place(key), key, error.what());
+  }
+  c.shape = VesselShape::mesh;
+  c.unit = std::string("m");
+  c.polygon.clear();
+}
+
 }  // namespace
 
 void take_mesh(const document::Document& document, const std::optional<tables::CurveFile>& file, Input& in) {
   Container& c = in.container;
+  if (c.shape == VesselShape::prism) take_prism(document, c);
   if (c.shape != VesselShape::mesh) return;
   const bool named = !c.file.empty();
   const std::string_view key = named ? mesh_file : mesh_text;

@@ -38,6 +38,7 @@ geometry::Container container_of(const Container& container) {
       box.shape = geometry::Shape::annulus;
       box.core = 0.5 * container.inner_diameter;
       break;
+    case VesselShape::prism:  // once it has been read it is a mesh
     case VesselShape::mesh:
       box.shape = geometry::Shape::mesh;
       box.room = container.mesh.get();

@@ -99,6 +99,7 @@ std::string wanted(const Key& key) {
   for (const std::string_view one : choices(key)) quotes.push_back(fmt::format("\"{}\"", one));
   if (!quotes.empty()) return joined(std::vector<std::string_view>(quotes.begin(), quotes.end()));
   const Slot slot = sample(key);
+  if (key.path == "container.polygon") return "a corner of two numbers [m]";
   if (std::holds_alternative<Curve*>(slot)) return a_number("a pair: a diameter", key) + " and the percentage passing";
   if (std::holds_alternative<bool*>(slot)) return "true or false";
   if (std::holds_alternative<std::string*>(slot)) return "a text in quotes";

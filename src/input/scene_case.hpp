@@ -62,7 +62,8 @@ struct Case {
     return axis + 1 == in.container.size.size() ? "container.height" : room_key();
   }
   [[nodiscard]] const char* room_key() const {
-    if (is(VesselShape::mesh)) return "container.file";
+    if (is(VesselShape::mesh))
+      return document.find("container.polygon") != nullptr ? "container.polygon" : "container.file";
     if (!is(VesselShape::frustum)) return boxed() ? "container.size" : "container.diameter";
     return in.container.bottom_diameter < in.container.top_diameter ? "container.top_diameter"
                                                                     : "container.bottom_diameter";

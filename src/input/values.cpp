@@ -149,11 +149,12 @@ void assign(const Arrival& arrival, std::array<double, 2>& to) {
   for (std::size_t i = 0; i < 2; ++i) assign(entry(arrival, list, i), to.at(i));
 }
 
-/// [diameter, percent]: the key's own number, and a plain one.
+/// [diameter, percent]: the key's own number, and a plain one. Of a polygon both are lengths.
 void assign_point(const Arrival& arrival, std::array<double, 2>& to) {
   const auto* pair = std::get_if<List>(&arrival.node.value);
   if (pair == nullptr || pair->size() != 2) arrival.want(wanted(arrival.key));
   assign(entry(arrival, *pair, 0), to[0]);
+  if (arrival.key.path == "container.polygon") return assign(entry(arrival, *pair, 1), to[1]);
   Key percent{.path = arrival.key.path, .slot = {}, .range = {0.0, 100.0}};
   percent.slot = [&to](Input&) -> Slot { return &to[1]; };
   assign(Arrival{percent, (*pair)[1], arrival.in, arrival.path + "[1]"}, to[1]);

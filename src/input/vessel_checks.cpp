@@ -31,9 +31,9 @@ void check_mesh(const Case& scene) {
                  fmt::format("{:g} m is above the top of the mesh, {:g} m; lower it", c.height, top));
   }
   if (c.mesh->volume() < 4.0 / 3.0 * std::numbers::pi * r * r * r) {
-    scene.refuse("container.file",
+    scene.refuse(scene.room_key(),
                  fmt::format("the mesh has a volume of {:.3g} m3, less than the largest particle, {:g} m "
-                             "across; is container.unit right?",
+                             "across; is its unit right?",
                              c.mesh->volume(), 2.0 * r));
   }
 }

@@ -11,8 +11,8 @@ template <class Enum>
 inline constexpr std::array<std::string_view, 0> words_of{};
 
 template <>
-inline constexpr std::array<std::string_view, 6> words_of<VesselShape>{"box",    "cylinder", "frustum",
-                                                                       "sphere", "annulus",  "mesh"};
+inline constexpr std::array<std::string_view, 7> words_of<VesselShape>{"box",     "cylinder", "frustum", "sphere",
+                                                                       "annulus", "prism",    "mesh"};
 template <>
 inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
 template <>

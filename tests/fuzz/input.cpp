@@ -81,11 +81,12 @@ bool same(const document::Node& asked, const document::Node& got) {
   return std::get<bool>(asked.value) == std::get<bool>(got.value);
 }
 
-/// Files, whose contents stand there instead; points, the finest first; the number of a list, which may be 0.
+/// Files, whose contents stand there instead; prisms, which are meshes; points, the finest first; the number of a list,
+/// which may be 0.
 bool is_rewritten(const std::string& key) {
   return key == "particles.radius.diameter_curve_file" || key == "particles.radius.list_file" ||
-         key == "container.file" || key == "container.unit" || key == "container.surface" ||
-         key == "particles.radius.diameter_curve" || key == "particles.count";
+         key == "container.file" || key == "container.unit" || key == "container.surface" || key == "container.shape" ||
+         key == "container.polygon" || key == "particles.radius.diameter_curve" || key == "particles.count";
 }
 
 const document::Node* entry_of(const document::Table& table, const std::string& name) {

@@ -16,10 +16,12 @@ namespace {
 
 using testing::Soup;
 
-/// A hopper with a beam across it, 160 mm wide.
+/// A hopper with a beam and a ball in it, 160 mm wide.
 Soup hopper_with_beam() {
   Soup soup = testing::hopper(0.75, 3);
   for (const mesh::Corners& c : testing::box({-0.5, -0.15, 1.0}, {0.5, 0.15, 1.3}, 2)) soup.push_back(c);
+  const auto ball = [](const Vec3& x) { return Vec3{0.2 * x[0] + 0.1, 0.2 * x[1] + 0.6, 0.2 * x[2] + 0.9}; };
+  for (const mesh::Corners& c : testing::moved(testing::ball(3), ball)) soup.push_back(c);
   return testing::moved(soup, [](const Vec3& x) {
     return Vec3{0.08 * (x[0] + 1.0), 0.08 * (x[1] + 1.0), 0.08 * x[2]};
   });
@@ -101,25 +103,29 @@ TEST_F(PackInMesh, GoesOnFromAPackInIt) {
   }
 }
 
-/// A box given by triangles is the box, but for rounding; what that does later is chance.
+/// A box given by triangles or as a prism is the box, but for rounding; what that does later is chance.
 TEST_F(PackInMesh, ABoxOfTrianglesIsTheBox) {
   const std::string more =
       "maximum = 1\nduration = 0.02\nregion = \"container\"\n[rest]\nwait = 0\n[dynamics]\nrelaxation = 0\n";
-  std::string text = text_of(testing::box({0, 0, 0}, {0.16, 0.12, 0.3}, 4), 0.2, more);
-  const scene::Scene of_mesh = scene_of(text);
-  const std::size_t from = text.find("shape ="), to = text.find("[particles]");
-  const scene::Scene of_box = scene_of(text.replace(from, to - from, "size = [0.16, 0.12, 0.2]\n"));
-  EXPECT_NEAR(of_mesh.container.volume_between(0.0, 0.2), of_box.container.volume_between(0.0, 0.2), 1e-15);
-  (void)run(of_mesh, world_.size(), 0, "");
-  const pack::PackRows a = rows();
-  const double fraction = record_.phi;
+  const std::string text = text_of(testing::box({0, 0, 0}, {0.16, 0.12, 0.3}, 4), 0.2, more);
+  const std::size_t from = text.find("shape ="), length = text.find("[particles]") - from;
+  const auto with = [&](const char* container) { return scene_of(std::string(text).replace(from, length, container)); };
+  const scene::Scene of_box = with("size = [0.16, 0.12, 0.2]\n");
   (void)run(of_box, world_.size(), 0, "");
   const pack::PackRows b = rows();
-  EXPECT_NEAR(fraction, record_.phi, 1e-9);
-  ASSERT_EQ(a.id.size(), b.id.size());
-  EXPECT_GT(a.id.size(), 80U);
-  for (std::size_t k = 0; k < a.id.size(); ++k) {
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a.position[k][c], b.position[k][c], 1e-9);
+  const double fraction = record_.phi;
+  EXPECT_GT(b.id.size(), 80U);
+  for (const scene::Scene& of_mesh :
+       {scene_of(text), with("shape = \"prism\"\nheight = 0.2\n"  // the other way round, and elsewhere
+                             "polygon = [[1, 1], [1, 1.12], [\"1160 mm\", 1.12], [1.16, 1]]\n")}) {
+    EXPECT_NEAR(of_mesh.container.volume_between(0.0, 0.2), of_box.container.volume_between(0.0, 0.2), 1e-15);
+    (void)run(of_mesh, world_.size(), 0, "");
+    const pack::PackRows a = rows();
+    EXPECT_NEAR(fraction, record_.phi, 1e-9);
+    ASSERT_EQ(a.id.size(), b.id.size());
+    for (std::size_t k = 0; k < a.id.size(); ++k) {
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a.position[k][c], b.position[k][c], 1e-9);
+    }
   }
 }
 
