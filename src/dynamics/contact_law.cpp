@@ -82,8 +82,13 @@ ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const part
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            neighbor::Wall wall, const StoredView& stored, std::int64_t entry) {
+  return wall_contact(scene, law, store, i, scene.container.facing(wall, store.position(i)), stored, entry);
+}
+
+ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                           const geometry::Facing& wall, const StoredView& stored, std::int64_t entry) {
   const double r = store.radius(i);
-  const auto [distance, normal, velocity] = scene.container.facing(wall, store.position(i));
+  const auto& [distance, normal, velocity] = wall;
   const double k = store.record(i)[store.layout().curvature];
   Vec3 v = store.velocity(i);
   for (std::size_t a = 0; a < 3; ++a) v[a] = velocity[a] - v[a];

@@ -43,7 +43,11 @@ struct ContactEffect {
 [[nodiscard]] ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const particles::Store& store,
                                          LocalIndex i, LocalIndex j, const StoredView& stored = {},
                                          std::int64_t entry = 0);
-/// Of a particle and a wall.
+/// Of a particle and what is there of a wall.
+[[nodiscard]] ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store,
+                                         LocalIndex i, const geometry::Facing& wall, const StoredView& stored = {},
+                                         std::int64_t entry = 0);
+/// Not of a mesh.
 [[nodiscard]] ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store,
                                          LocalIndex i, neighbor::Wall wall, const StoredView& stored = {},
                                          std::int64_t entry = 0);

@@ -34,9 +34,10 @@ double overlap_of(const Inspected& now, LocalIndex i, LocalIndex j) {
   return (ri + rj - norm(d)) / std::min(ri, rj);
 }
 
-/// Penetration of a wall over the radius; negative: apart.
-double penetration_of(const Inspected& now, LocalIndex i, neighbor::Wall wall) {
-  const double distance = now.scene.container.facing(wall, now.store.position(i)).distance;
+/// Penetration of the wall of an entry over the radius; negative: apart.
+double penetration_of(const Inspected& now, LocalIndex i, std::size_t entry) {
+  const double distance =
+      neighbor::facing_of(now.scene.container, now.neighborhood.walls(), entry, now.store.position(i)).distance;
   return (now.store.radius(i) - distance) / now.store.radius(i);
 }
 
@@ -67,7 +68,7 @@ void inspect_contacts(const Inspected& now, Worst& worst) {
   }
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const double depth = penetration_of(now, walls.particle[w], walls.wall[w]);
+    const double depth = penetration_of(now, walls.particle[w], w);
     if (depth > deepest_overlap) worst.show(Fault::overlap, depth, walls.particle[w]);
   }
 }
@@ -96,7 +97,7 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
       "the lid",   "the round wall", "the inner wall", "the wall above the cone"};
   const neighbor::WallList& walls = now.neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const double depth = walls.particle[w] == i ? penetration_of(now, i, walls.wall[w]) : 0.0;
+    const double depth = walls.particle[w] == i ? penetration_of(now, i, w) : 0.0;
     if (!(depth > 0.0)) continue;
     const auto number = static_cast<std::size_t>(walls.wall[w]);
     touching.emplace_back(

@@ -44,9 +44,7 @@ Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::
   return at;
 }
 
-Interaction of_wall(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
-                    neighbor::Wall wall) {
-  const geometry::Facing at_wall = scene.container.facing(wall, store.position(i));
+Interaction of_wall(const Law& law, const particles::Store& store, LocalIndex i, const geometry::Facing& at_wall) {
   const Vec3 v = store.velocity(i);
   Interaction at{.first = i,
                  .second = -1,

@@ -26,8 +26,8 @@ struct Interaction {
 [[nodiscard]] Interaction of_pair(const scene::Scene& scene, const Law& law, const particles::Store& store,
                                   LocalIndex i, LocalIndex j);
 /// Of a particle and a wall.
-[[nodiscard]] Interaction of_wall(const scene::Scene& scene, const Law& law, const particles::Store& store,
-                                  LocalIndex i, neighbor::Wall wall);
+[[nodiscard]] Interaction of_wall(const Law& law, const particles::Store& store, LocalIndex i,
+                                  const geometry::Facing& at_wall);
 /// 1/m [1/kg].
 [[nodiscard]] double inverse_mass(const Law& law, const particles::Store& store, LocalIndex i);
 

@@ -32,14 +32,16 @@ struct Axes {
 // All interactions of the lists, `near` for those of the near field.
 template <class Contact, class Near>
 void each(const scene::Scene& scene, const Law& law, const particles::Store& store,
-          const neighbor::Neighborhood& neighborhood, Contact&& contact, Near&& near) {
+          neighbor::Neighborhood& neighborhood, Contact&& contact, Near&& near) {
+  neighborhood.face_walls(store);
   const neighbor::PairList& pairs = neighborhood.pairs();
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     contact(of_pair(scene, law, store, pairs.first[p], pairs.second[p]));
   }
   const neighbor::WallList& walls = neighborhood.walls();
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    contact(of_wall(scene, law, store, walls.particle[w], walls.wall[w]));
+    const LocalIndex i = walls.particle[w];
+    contact(of_wall(law, store, i, neighbor::facing_of(scene.container, walls, w, store.position(i))));
   }
   const neighbor::PairList& far = neighborhood.near_pairs();
   for (std::size_t p = 0; p < far.first.size(); ++p) {

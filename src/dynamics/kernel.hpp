@@ -71,12 +71,9 @@ struct StepData {
   std::array<bool, 2> periodic;
   Planes planes;
   geometry::RoundWalls round = {};
-  mesh::Table mesh = {};  ///< of a mesh
-  const std::int32_t* near_begin =
-      nullptr;  ///< of a mesh: of the entries from `wall_particle` on, see neighbor::WallList
-  const std::int32_t* near = nullptr;
-  StoredVectors stored_pairs = {};  ///< of the entries from `first` on
-  StoredVectors stored_walls = {};  ///< of the entries from `wall_particle` on
+  const geometry::Facing* facing = nullptr;  ///< of a mesh: of the entries from `wall_particle` on
+  StoredVectors stored_pairs = {};           ///< of the entries from `first` on
+  StoredVectors stored_walls = {};           ///< of the entries from `wall_particle` on
 };
 
 /// Slots of a ring for a pair list's window. The room beyond it lets a block of pairs run on while the slots of its

@@ -24,21 +24,6 @@ PACKMPI_INLINE void put_round(const geometry::RoundWall& wall, Block<F>& b, int 
   b.distance[p] = wall.offset - wall.radial * rho - lean;
 }
 
-/// The same of a face, an edge or a corner of a mesh, entry `entry` of the wall list.
-template <Features F>
-PACKMPI_INLINE void put_feature(const StepData& data, Block<F>& b, int p, std::int64_t entry, std::int32_t feature,
-                                const double* x) {
-  if constexpr (F.dimension == 3) {
-    const mesh::Table table = data.mesh;
-    const std::int32_t* at = data.near_begin + entry;
-    const mesh::Touch touch = mesh::touch(table, feature, data.near, at[0], at[1], x, x[F.layout().radius]);
-    b.in[0][p] = touch.normal[0];
-    b.in[1][p] = touch.normal[1];
-    b.in[2][p] = touch.normal[2];
-    b.distance[p] = touch.distance;
-  }
-}
-
 /// Fill entry p of the block for one particle at one wall: the wall is a second end whose fields are zero, but for its
 /// speed along its axis.
 template <Features F>
@@ -56,7 +41,9 @@ PACKMPI_INLINE void put_wall(const StepData& data, Block<F>& b, int p, std::int6
   // Copies: the block that is written below cannot alias them.
   if (number >= geometry::most_planes) [[unlikely]] {
     if (number >= geometry::most_surfaces) {
-      put_feature<F>(data, b, p, entry, static_cast<std::int32_t>(number - geometry::most_surfaces), record);
+      const geometry::Facing facing = data.facing[entry];
+      for (unsigned a = 0; a < F.dimension; ++a) b.in[a][p] = facing.normal[a];
+      b.distance[p] = facing.distance;
       return;
     }
     const geometry::RoundWall round = data.round[number - geometry::most_planes];

@@ -26,7 +26,7 @@ StepData part_of(StepData whole, const neighbor::Leg& before, const neighbor::Le
   whole.pairs = leg.pairs_end - before.pairs_end;
   whole.wall_particle += before.walls_end;
   whole.wall += before.walls_end;
-  if (whole.near_begin != nullptr) whole.near_begin += before.walls_end;
+  if (whole.facing != nullptr) whole.facing += before.walls_end;
   whole.walls = leg.walls_end - before.walls_end;
   if (whole.stored_pairs.values != nullptr) whole.stored_pairs.values += before.pairs_end;
   if (whole.stored_walls.values != nullptr) whole.stored_walls.values += before.walls_end;
@@ -168,10 +168,7 @@ StepData Stepper::data(particles::Store& store, neighbor::Neighborhood& neighbor
       .periodic = scene_->container.periodic,
       .planes = planes_of(scene_->container),
       .round = round_of(scene_->container),
-      .mesh = scene_->container.is_mesh() ? scene_->container.room->features().table(scene_->container.behind)
-                                          : mesh::Table{},
-      .near_begin = walls.near_begin.empty() ? nullptr : walls.near_begin.data(),
-      .near = walls.near.data(),
+      .facing = walls.facing.empty() ? nullptr : walls.facing.data(),
       .stored_pairs = {neighborhood.memory().of_pairs(), std::ssize(pairs.first)},
       .stored_walls = {neighborhood.memory().of_walls(), std::ssize(walls.particle)},
   };

@@ -1,12 +1,11 @@
-/// What a sphere touches of a surface: a face, an edge or a corner of it, each by one formula. The step kernel and
-/// everybody else use these very functions: they are made of + - * / and square root, call nothing and are always
-/// inlined, so that they mean the same under any instruction set.
+/// What a sphere touches of a surface: a face, an edge or a corner of it, each by one formula of + - * / and
+/// square root.
 #pragma once
 #include <cstdint>
 
 namespace packmpi::mesh {
 
-/// A surface as a step reads it. Faces are numbered first, then edges, then corners. Directions have length 1.
+/// A surface as contacts read it. Faces are numbered first, then edges, then corners. Directions have length 1.
 struct Table {
   const double* faces = nullptr;            ///< 4 each: normal out of the room, offset
   const double* triangles = nullptr;        ///< 12 each: of three sides the direction into it, in its plane, and offset
@@ -14,6 +13,7 @@ struct Table {
   const double* corners = nullptr;          ///< 3 each
   const double* spokes = nullptr;           ///< 4 each: the direction of an edge that begins at a corner, and offset
   const std::int32_t* spokes_of = nullptr;  ///< of each corner the first, and the end of the last
+  const std::int32_t* patch = nullptr;      ///< of each feature: those that are smooth together have one, see Features
   std::int32_t edge_begin = 0, corner_begin = 0;  ///< numbers of the first edge and the first corner
   double behind = 0.0;                            ///< [m] what is so far behind a face belongs to another room
 };

@@ -9,7 +9,8 @@
 namespace packmpi::mesh {
 namespace {
 
-constexpr double flat_angle = 1e-4;  // [rad] by which triangles of one face may differ at most
+constexpr double flat_angle = 1e-4;     // [rad] by which triangles of one face may differ at most
+constexpr double smooth_cosine = 0.94;  // of 20 degrees: faces that meet at less are a round wall's
 
 // Triangles in groups: each points to an earlier one of its own.
 class Groups {
@@ -135,6 +136,7 @@ Features::Features(const Shell& shell) {
   find_sides(shell);
   find_edges(shell);
   find_corners(shell);
+  find_patches(shell);
 }
 
 void Features::find_faces(const Shell& shell) {
@@ -237,10 +239,49 @@ void Features::find_corners(const Shell& shell) {
   }
 }
 
+void Features::find_patches(const Shell& shell) {
+  const auto normal = [&](std::int32_t face) { return faces_.data() + 4 * static_cast<std::size_t>(face); };
+  Groups groups(static_cast<std::size_t>(edge_begin_));
+  patch_.resize(static_cast<std::size_t>(count()));
+  std::iota(patch_.begin(), patch_.end(), 0);
+  const auto each_side = [&](auto&& see) {  // triangle, number of its side, faces on both sides of it
+    for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        see(t, k, face_of_[t], face_of_[static_cast<std::size_t>(shell.neighbours[t].at(k))]);
+      }
+    }
+  };
+  const auto smooth = [&](std::int32_t a, std::int32_t b) { return along(normal(a), normal(b)) > smooth_cosine; };
+  each_side([&](std::size_t, std::size_t, std::int32_t a, std::int32_t b) {
+    if (smooth(a, b)) groups.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+  });
+  for (std::size_t f = 0; f < static_cast<std::size_t>(edge_begin_); ++f) {
+    patch_[f] = static_cast<std::int32_t>(groups.first(f));
+  }
+  std::vector<bool> alone(patch_.size());
+  each_side([&](std::size_t t, std::size_t k, std::int32_t a, std::int32_t b) {
+    const std::int32_t edge = edges_of_[t].at(k);
+    if (edge >= 0 && smooth(a, b)) patch_[static_cast<std::size_t>(edge)] = patch_[static_cast<std::size_t>(a)];
+    for (const std::size_t end : {k, (k + 1) % 3}) {
+      const std::int32_t corner = corners_of_[t].at(end);
+      if (corner < 0) continue;
+      const auto c = static_cast<std::size_t>(corner);
+      const std::int32_t patch = patch_[static_cast<std::size_t>(a)];
+      const bool first = patch_[c] == corner;
+      if ((edge >= 0 && !smooth(a, b)) || (!first && patch_[c] != patch)) alone[c] = true;
+      patch_[c] = patch;
+    }
+  });
+  for (std::size_t c = 0; c < alone.size(); ++c) {
+    if (alone[c]) patch_[c] = static_cast<std::int32_t>(c);
+  }
+}
+
 std::size_t Features::bytes() const noexcept {
   return (faces_.capacity() + triangles_.capacity() + edges_.capacity() + corners_.capacity() + spokes_.capacity()) *
              sizeof(double) +
-         (spokes_of_.capacity() + face_of_.capacity() + 3 * edges_of_.capacity() + 3 * corners_of_.capacity()) *
+         (spokes_of_.capacity() + face_of_.capacity() + patch_.capacity() + 3 * edges_of_.capacity() +
+          3 * corners_of_.capacity()) *
              sizeof(std::int32_t);
 }
 

@@ -40,7 +40,10 @@ void Surface::weigh_points() {
   point_.assign(shell_.points.size(), {});
   for (std::size_t t = 0; t < spot_.size(); ++t) {
     const Corners c = shell_.corners(t);
-    spot_[t] = {unit(shell_.normal(t)), c[0], std::max(norm(minus(c[1], c[0])), norm(minus(c[2], c[0])))};
+    const Vec3 middle = times(1.0 / 3.0, plus(c[0], plus(c[1], c[2])));
+    double reach = 0.0;
+    for (const Vec3& corner : c) reach = std::max(reach, norm(minus(corner, middle)));
+    spot_[t] = {unit(shell_.normal(t)), middle, reach};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 a = minus(c.at((k + 1) % 3), c.at(k)), b = minus(c.at((k + 2) % 3), c.at(k));
       Vec3& sum = point_[static_cast<std::size_t>(shell_.triangles[t].at(k))];
@@ -132,14 +135,14 @@ Vec3 Surface::outward(const Hit& hit) const {
 // From the plane of a triangle, squared, a little less: no place of the triangle is nearer.
 double Surface::off_plane(const Vec3& x, int triangle) const {
   const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
-  const double away = dot(spot.normal, minus(x, spot.corner));
+  const double away = dot(spot.normal, minus(x, spot.middle));
   return (1.0 - 1e-9) * (away * away);
 }
 
 // Wrong for the sake of rounding only where the range is a millionth of the triangle.
 bool Surface::may_be_near(const Vec3& x, int triangle, double range) const {
   const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
-  const Vec3 d = minus(x, spot.corner);
+  const Vec3 d = minus(x, spot.middle);
   const double away = dot(spot.normal, d), reach = range + spot.reach;
   return (1.0 - 1e-9) * (away * away) < range * range && (1.0 - 1e-9) * dot(d, d) < reach * reach;
 }
@@ -222,7 +225,7 @@ void Surface::touches(const Vec3& x, double range, double behind,
   }
 }
 
-// The triangle that x stands on comes first of a face's: most often it is still the one when a step asks.
+// Of a face's triangles the nearest comes first: most often it is the one that is asked for.
 void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
   found.clear();
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
@@ -237,10 +240,13 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
     std::uint32_t& seen = found.seen[static_cast<std::size_t>(t)];
     if (seen == found.search) return;
     seen = found.search;
-    if (may_be_near(x, t, range) && hit(x, t).squared < square) found.hits.push_back(t);
+    if (!may_be_near(x, t, range)) return;
+    if (const double squared = hit(x, t).squared; squared < square) {
+      found.hits.push_back({t, squared});
+    }
   });
-  std::ranges::sort(found.hits);
-  for (const int t : found.hits) {
+  std::ranges::sort(found.hits, {}, &NearFeatures::Hit::triangle);
+  for (const auto& [t, squared] : found.hits) {
     const std::int32_t face = features_.face_of(static_cast<std::size_t>(t));
     const double* plane = table.faces + 4 * std::int64_t{face};
     if (plane[3] - along(plane, x.data()) > -(behind + range)) found.feature.push_back(face);
@@ -260,13 +266,14 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   std::ranges::sort(found.feature);
   found.feature.erase(std::unique(found.feature.begin(), found.feature.end()), found.feature.end());
   for (const std::int32_t feature : found.feature) {
-    const auto begin = static_cast<std::int32_t>(found.triangles.size());
-    for (const int t : found.hits) {
-      if (feature >= features_.edge_begin() || features_.face_of(static_cast<std::size_t>(t)) != feature) continue;
-      found.triangles.push_back(t);
-      const auto last = static_cast<std::int32_t>(found.triangles.size()) - 1;
-      if (!stands_on(table, found.triangles.data(), last, last + 1, x.data())) continue;
-      std::swap(found.triangles[static_cast<std::size_t>(begin)], found.triangles.back());
+    if (feature < features_.edge_begin()) {
+      const std::size_t first = found.triangles.size();
+      double least = endless;
+      for (const auto& [t, squared] : found.hits) {
+        if (features_.face_of(static_cast<std::size_t>(t)) != feature) continue;
+        found.triangles.push_back(t);
+        if (squared < least) least = squared, std::swap(found.triangles[first], found.triangles.back());
+      }
     }
     found.end.push_back(static_cast<std::int32_t>(found.triangles.size()));
   }

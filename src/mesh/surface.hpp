@@ -22,7 +22,11 @@ struct Nearest {
 struct NearFeatures {
   std::vector<std::int32_t> feature, end;  ///< end of its triangles; those of the first begin at 0
   std::vector<std::int32_t> triangles;
-  std::vector<int> hits;            // of the search
+  struct Hit {
+    std::int32_t triangle;
+    double squared;  // distance [m2]
+  };
+  std::vector<Hit> hits;            // of the search
   std::vector<std::uint32_t> seen;  // of each triangle: the last search that has looked at it
   std::uint32_t search = 0;
 
@@ -103,8 +107,8 @@ class Surface {
   };
   /// Of a triangle, in one line of memory, what tells that most others are not near.
   struct alignas(64) Spot {
-    Vec3 normal, corner;
-    double reach;  // [m] from that corner to the others
+    Vec3 normal, middle;
+    double reach;  // [m] from the middle to the farthest corner
   };
   [[nodiscard]] Hit hit(const Vec3& x, int triangle) const;
   [[nodiscard]] double off_plane(const Vec3& x, int triangle) const;

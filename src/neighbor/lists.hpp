@@ -27,6 +27,14 @@ struct WallList {
   /// Of a mesh: triangles of its faces that each entry's particle may be above, `near` from near_begin[entry] up to
   /// near_begin[entry + 1]. Of other containers both are empty.
   std::vector<std::int32_t> near_begin, near;
+  /// Of a mesh, where each entry's wall is: see Neighborhood::face_walls. Of other containers empty.
+  std::vector<geometry::Facing> facing;
 };
+
+/// Where the wall of an entry of a list is, seen from its particle at `x`.
+[[nodiscard]] inline geometry::Facing facing_of(const geometry::Container& box, const WallList& walls,
+                                                std::size_t entry, const Vec3& x) {
+  return walls.facing.empty() ? box.facing(walls.wall[entry], x) : walls.facing[entry];
+}
 
 }  // namespace packmpi::neighbor

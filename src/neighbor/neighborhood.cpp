@@ -91,6 +91,7 @@ void Neighborhood::rebuild(particles::Store& store) {
   build_walls(store);
   memory_.lay_down(store, pairs_, walls_);
   if (one_sided_) complete_borders(store);
+  face_walls(store);
   sweep_ = make_sweep(store.owned(), pairs_, walls_, halo_);
   slack_ = least_slack(store);
   drift_ = 0.0;
@@ -139,6 +140,7 @@ void Neighborhood::meet(std::array<double, 2>& shared) {
 Alarm Neighborhood::follow(particles::Store& store, double max_speed, double time_step, Alarm mine) {
   const double way = max_speed * time_step;
   time_step_ = time_step;
+  face_walls(store);
   drift_ += way;
   if (!std::isfinite(drift_)) mine = Alarm::fault;
   std::array<double, 2> shared{mine == Alarm::fault ? 0.0 : drift_ - slack_, static_cast<double>(mine)};
@@ -428,6 +430,7 @@ std::size_t Neighborhood::bytes() const noexcept {
     total += (list->first.capacity() + list->second.capacity()) * sizeof(LocalIndex);
   }
   total += memory_.bytes();
+  total += walls_.facing.capacity() * sizeof(geometry::Facing);
   total += (walls_.near.capacity() + walls_.near_begin.capacity()) * sizeof(std::int32_t);
   return total + walls_.particle.capacity() * (sizeof(LocalIndex) + sizeof(Wall));
 }

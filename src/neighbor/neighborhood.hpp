@@ -65,6 +65,15 @@ class Neighborhood {
   /// caller changes both.
   void deform(particles::Store& store, const std::array<double, 2>& factors);
 
+  /// Of a mesh: where the walls of the list are now, and what of them each particle touches. Local; rebuild() and
+  /// follow() have done it, others that move particles have to. Features of a patch (mesh::Features) whose directions
+  /// differ by less than 45 degrees are one wall to a particle: the nearest of them is touched alone, along a mean of
+  /// the directions of those that are overlapped, in which what comes and goes has no weight; and it takes over what
+  /// the others remember. So a round wall of triangles is touched once wherever its edges are, its force is continuous,
+  /// and friction's memory goes with the particle. What depends on positions alone has the same bits whatever the lists
+  /// are.
+  void face_walls(const particles::Store& store);
+
   /// Is owned particle `i` where one may be: its centre less than its radius beyond a wall, and finite? Local.
   [[nodiscard]] bool is_inside(const particles::Store& store, LocalIndex i) const;
 

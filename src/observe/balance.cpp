@@ -75,8 +75,8 @@ void add_walls(const particles::Store& store, const scene::Scene& scene, const d
                const neighbor::Neighborhood& neighborhood, Sums& sums, std::vector<double>& magnitudes) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   each_touching_wall(store, scene.container, neighborhood.walls(),
-                     [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double) {
-                       const Vec3 force = dynamics::wall_contact(scene, law, store, i, wall, stored, entry).force;
+                     [&](std::int64_t entry, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
+                       const Vec3 force = dynamics::wall_contact(scene, law, store, i, at, stored, entry).force;
                        sums.add(i, force);
                        magnitudes.push_back(length(force));
                      });

@@ -42,9 +42,10 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
   const PairSums sums = count_pairs(store, scene.container, pairs, frozen_below, result.of_particle);
 
   double deepest = 0.0;
-  each_touching_wall(store, scene.container, walls, [&](std::int64_t, LocalIndex i, neighbor::Wall, double depth) {
-    deepest = std::max(deepest, depth / store.radius(i));
-  });
+  each_touching_wall(store, scene.container, walls,
+                     [&](std::int64_t, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
+                       deepest = std::max(deepest, (store.radius(i) - at.distance) / store.radius(i));
+                     });
   std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
                                      sums.ends};
   comm.sum(counts);

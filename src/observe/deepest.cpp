@@ -24,9 +24,10 @@ Deepest deepest(const comm::Comm& comm, const particles::Store& store, const sce
     if (id(j) < id(i)) std::swap(i, j);
     take(overlap / std::min(store.radius(i), store.radius(j)), id(i), id(j), store.position(i));
   });
-  each_touching_wall(store, scene.container, walls, [&](std::int64_t, LocalIndex i, neighbor::Wall, double depth) {
-    take(depth / store.radius(i), id(i), nobody, store.position(i));
-  });
+  each_touching_wall(store, scene.container, walls,
+                     [&](std::int64_t, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
+                       take((store.radius(i) - at.distance) / store.radius(i), id(i), nobody, store.position(i));
+                     });
   Deepest found{.overlap = comm.max(mine.overlap), .first = -1, .second = -1, .at = {}};
   if (!(found.overlap > 0.0)) return found;
   const bool same = mine.overlap == found.overlap;

@@ -76,20 +76,17 @@ std::vector<ContactForce> wall_forces(const particles::Store& store, const scene
                                       const neighbor::WallList& walls, const dynamics::StoredView& stored) {
   const dynamics::Law law = dynamics::make_law(scene);
   std::vector<ContactForce> rows;
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    const neighbor::Wall wall = walls.wall[w];
-    const double overlap = wall_penetration(store, scene.container, i, wall);
-    if (!(overlap > 0.0)) continue;
-    const dynamics::ContactEffect effect =
-        dynamics::wall_contact(scene, law, store, i, wall, stored, static_cast<std::int64_t>(w));
-    rows.push_back({.first = store.ids()[static_cast<std::size_t>(i)],
-                    .second = neighbor::wall_partner(wall),
-                    .overlap = overlap,
-                    .force = effect.force,
-                    .normal = scene.container.facing(wall, store.position(i)).normal,
-                    .springs = effect.springs});
-  }
+  each_touching_wall(store, scene.container, walls,
+                     [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
+                       const dynamics::ContactEffect effect =
+                           dynamics::wall_contact(scene, law, store, i, at, stored, entry);
+                       rows.push_back({.first = store.ids()[static_cast<std::size_t>(i)],
+                                       .second = neighbor::wall_partner(wall),
+                                       .overlap = store.radius(i) - at.distance,
+                                       .force = effect.force,
+                                       .normal = at.normal,
+                                       .springs = effect.springs});
+                     });
   sort_by_ends(rows);
   return rows;
 }
@@ -99,11 +96,12 @@ double floor_force(const comm::Comm& comm, const particles::Store& store, const 
   const dynamics::Law law = dynamics::make_law(scene);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   std::vector<double> forces;
-  each_touching_wall(store, scene.container, walls, [&](std::int64_t, LocalIndex i, neighbor::Wall wall, double) {
-    if (wall != neighbor::Wall::floor) return;
-    const double up = dynamics::wall_contact(scene, law, store, i, wall).force[vertical];
-    forces.push_back(up);  // friction on a plane has no part in it
-  });
+  each_touching_wall(store, scene.container, walls,
+                     [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
+                       if (wall != neighbor::Wall::floor) return;
+                       const double up = dynamics::wall_contact(scene, law, store, i, at).force[vertical];
+                       forces.push_back(up);  // friction on a plane has no part in it
+                     });
   return comm::exact_sum(comm, forces);
 }
 

@@ -67,10 +67,11 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
 void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
                const neighbor::Neighborhood& neighborhood, std::vector<double>& terms) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
-  const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double overlap) {
+  const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
+    const double overlap = store.radius(i) - at.distance;
     terms.push_back(elastic_energy(law.of_wall(scene::wall_code(store, i)), store.radius(i), overlap));
     if (!scene.features.memory) return;
-    terms.push_back(dynamics::wall_contact(scene, law, store, i, wall, stored, entry).spring_energy);
+    terms.push_back(dynamics::wall_contact(scene, law, store, i, at, stored, entry).spring_energy);
   };
   each_touching_wall(store, scene.container, neighborhood.walls(), add);
 }

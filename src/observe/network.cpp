@@ -19,9 +19,10 @@ class Holding {
     each_touching(store, box, neighborhood.pairs(), [&](std::int64_t, LocalIndex i, LocalIndex j, double) {
       touching_.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j)});
     });
-    each_touching_wall(store, box, neighborhood.walls(), [&](std::int64_t, LocalIndex i, neighbor::Wall, double) {
-      ++of_walls_[static_cast<std::size_t>(i)];
-    });
+    each_touching_wall(store, box, neighborhood.walls(),
+                       [&](std::int64_t, LocalIndex i, neighbor::Wall, const geometry::Facing&) {
+                         ++of_walls_[static_cast<std::size_t>(i)];
+                       });
     count();
   }
 

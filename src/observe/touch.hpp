@@ -33,12 +33,6 @@ struct Touch {
   return j < store.owned() || other < frozen_below || store.ids()[static_cast<std::size_t>(i)] < other;
 }
 
-/// Depth by which owned particle `i` is inside a wall [m]; positive: it touches.
-[[nodiscard]] inline double wall_penetration(const particles::Store& store, const geometry::Container& box,
-                                             LocalIndex i, neighbor::Wall wall) {
-  return store.radius(i) - box.facing(wall, store.position(i)).distance;
-}
-
 /// Calls take(entry, i, j, overlap [m]) for each listed pair that touches, in the order of the list.
 template <class Take>
 void each_touching(const particles::Store& store, const geometry::Container& box, const neighbor::PairList& pairs,
@@ -49,13 +43,14 @@ void each_touching(const particles::Store& store, const geometry::Container& box
   }
 }
 
-/// Calls take(entry, i, wall, depth [m]) for each particle that touches a wall, in the order of the list.
+/// Calls take(entry, i, wall, facing) for each particle that touches a wall, in the order of the list.
 template <class Take>
 void each_touching_wall(const particles::Store& store, const geometry::Container& box, const neighbor::WallList& walls,
                         Take&& take) {
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const double depth = wall_penetration(store, box, walls.particle[w], walls.wall[w]);
-    if (depth > 0.0) take(static_cast<std::int64_t>(w), walls.particle[w], walls.wall[w], depth);
+    const LocalIndex i = walls.particle[w];
+    const geometry::Facing at = neighbor::facing_of(box, walls, w, store.position(i));
+    if (at.distance < store.radius(i)) take(static_cast<std::int64_t>(w), i, walls.wall[w], at);
   }
 }
 

@@ -163,7 +163,7 @@ StepReport step_in_parts(const dynamics::Kernel kernel, Cloud& cloud, support::D
     for (part.pairs = 0; pairs_done < pairs && part.first[part.pairs] < cut; ++pairs_done) ++part.pairs;
     part.wall_particle = cloud.walls.particle.data() + walls_done;
     part.wall = cloud.walls.wall.data() + walls_done;
-    if (part.near_begin != nullptr) part.near_begin = cloud.walls.near_begin.data() + walls_done;
+    if (part.facing != nullptr) part.facing = cloud.walls.facing.data() + walls_done;
     for (part.walls = 0; walls_done < walls && part.wall_particle[part.walls] < cut; ++walls_done) ++part.walls;
     report = dynamics::together(report, kernel(part));
   }

@@ -142,12 +142,10 @@ void Cloud::list(Dice& dice) {
     if (room) {
       mesh::NearFeatures found;
       room->near({a[0], a[1], a[2]}, r + margin, 0.25 * radius, found);
-      if (walls.near_begin.empty()) walls.near_begin.push_back(0);
-      const auto before = static_cast<std::int32_t>(walls.near.size());
-      walls.near.insert(walls.near.end(), found.triangles.begin(), found.triangles.end());
-      for (std::size_t k = 0; k < found.feature.size(); ++k) {
-        near(0.0, static_cast<neighbor::Wall>(static_cast<std::int32_t>(geometry::most_surfaces) + found.feature[k]));
-        walls.near_begin.push_back(before + found.end[k]);
+      for (const std::int32_t feature : found.feature) {
+        near(0.0, static_cast<neighbor::Wall>(static_cast<std::int32_t>(geometry::most_surfaces) + feature));
+        const mesh::Touch at = room->touch_of(feature, {a[0], a[1], a[2]}, 0.25 * radius);
+        walls.facing.push_back({at.distance, {at.normal[0], at.normal[1], at.normal[2]}});
       }
       continue;
     }
@@ -289,9 +287,7 @@ dynamics::StepData Cloud::data() {
           .periodic = periodic,
           .planes = dynamics::planes_of({features.dimension, size, periodic}),
           .round = round_walls(),
-          .mesh = room ? room->features().table(0.25 * radius) : mesh::Table{},
-          .near_begin = walls.near_begin.empty() ? nullptr : walls.near_begin.data(),
-          .near = walls.near.data(),
+          .facing = walls.facing.empty() ? nullptr : walls.facing.data(),
           .stored_pairs = {pair_stored.data(), std::ssize(pairs.first)},
           .stored_walls = {wall_stored.data(), std::ssize(walls.particle)}};
 }

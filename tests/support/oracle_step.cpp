@@ -250,44 +250,6 @@ Effect pair_effect(const Features& f, const StepData& data, const Grain& i, cons
   return contact(f, data, constants, {reduced_radius, reduced_mass, n, distance, overlap, u, s, spin}, springs);
 }
 
-/// Of a part of a mesh: how far, and its direction. Not near it: far away.
-double at_feature(const StepData& data, std::int64_t entry, std::size_t feature, const Vec3& x, Vec3& n) {
-  const mesh::Table& t = data.mesh;
-  const auto vector = [](const double* from) { return Vec3{from[0], from[1], from[2]}; };
-  const auto edges = static_cast<std::size_t>(t.edge_begin), corners = static_cast<std::size_t>(t.corner_begin);
-  bool on = false;
-  if (feature < edges) {
-    const double* face = t.faces + 4 * feature;
-    n = vector(face);
-    for (std::int32_t k = data.near_begin[entry]; k < data.near_begin[entry + 1]; ++k) {
-      const double* sides = t.triangles + 12 * data.near[k];
-      bool above = true;
-      for (int s = 0; s < 3; ++s) above = above && dot(vector(sides + 4 * s), x, 3) >= sides[4 * s + 3];
-      on = on || above;
-    }
-    const double distance = face[3] - dot(n, x, 3);
-    return on && distance > -t.behind ? distance : mesh::far_away;
-  }
-  Vec3 place{};
-  if (feature < corners) {
-    const double* e = t.edges + 16 * (feature - edges);
-    const double u = dot(vector(e + 3), x, 3);
-    on = u > e[6] && u < e[7] && dot(vector(e + 8), x, 3) < e[11] && dot(vector(e + 12), x, 3) < e[15];
-    for (std::size_t a = 0; a < 3; ++a) place[a] = e[a] + (u - e[6]) * e[3 + a];
-  } else {
-    const std::size_t corner = feature - corners;
-    place = vector(t.corners + 3 * corner);
-    on = true;
-    for (std::int32_t k = t.spokes_of[corner]; k < t.spokes_of[corner + 1]; ++k) {
-      if (dot(vector(t.spokes + 4 * k), x, 3) > t.spokes[4 * k + 3]) on = false;
-    }
-  }
-  const Vec3 d{place[0] - x[0], place[1] - x[1], place[2] - x[2]};
-  const double distance = std::sqrt(dot(d, d, 3) + tiny);
-  n = {d[0] * (1.0 / distance), d[1] * (1.0 / distance), d[2] * (1.0 / distance)};
-  return on ? distance : mesh::far_away;
-}
-
 Effect wall_effect(const Features& f, const StepData& data, const Grain& i, std::int64_t entry, Springs& springs) {
   const neighbor::Wall wall = data.wall[entry];
   const auto up = static_cast<std::size_t>(f.dimension - 1);
@@ -329,7 +291,7 @@ Effect wall_effect(const Features& f, const StepData& data, const Grain& i, std:
       break;
     }
     default:
-      distance = at_feature(data, entry, static_cast<std::size_t>(wall) - geometry::most_surfaces, i.x, n);
+      n = data.facing[entry].normal, distance = data.facing[entry].distance;
   }
   double reduced_radius = data.law.wall.reduced_radius;
   double reduced_mass = data.law.wall.reduced_mass;
