@@ -58,6 +58,20 @@ struct Container {
   std::vector<Boundary> boundary;  ///< one per lateral axis; of other vessels than a box: walls
 };
 
+enum class Body { sphere, cylinder, box, mesh };
+enum class Axis { x, y, z };
+
+/// What stands or hangs in the container. Once the scene has been read the container is a mesh that has them as holes.
+struct Obstacle {
+  Body shape = Body::sphere;
+  double diameter = 0.0, length = 0.0;  ///< [m] of a sphere or cylinder; along the axis
+  Axis axis = Axis::z;                  ///< of a cylinder
+  Vec3 size{};                          ///< [m] of a box
+  std::string file, unit;               ///< of a mesh: STL or OBJ beside the scene, and its unit
+  std::optional<Vec3> position;         ///< [m] of its middle; none: a mesh is where its file has it
+  std::string place;                    ///< in the scene file, for messages
+};
+
 struct Radius {
   SizeDistribution distribution = SizeDistribution::equal;
   Weighting weighting = Weighting::number;           ///< what the distribution counts: particles, their mass or area
@@ -246,6 +260,7 @@ struct Input {
   std::uint64_t seed = 1;
   std::string fidelity = "paper";
   Container container;
+  std::vector<Obstacle> obstacles;  ///< none once the scene has been read
   Particles particles;  ///< of several components: the stiffest modulus, the least density, the sizes of all
   Mixture mixture;
   std::vector<Component> components;  ///< none, or several

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <thread>
 
+#include "asked/restitution.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/signals.hpp"
@@ -22,7 +23,6 @@
 #include "forecast/estimate.hpp"
 #include "forecast/limits.hpp"
 #include "input/fidelity.hpp"
-#include "input/restitution.hpp"
 #include "report/report.hpp"
 #include "run/analyze.hpp"
 #include "run/files.hpp"
@@ -35,6 +35,18 @@
 namespace packmpi::cli {
 namespace {
 
+// The effective scene for people: a surface of many triangles is told, not shown.
+std::string effective_to_show(const input::Input& in) {
+  constexpr std::size_t shown = 2000;
+  const std::size_t begin = in.effective.find("\nsurface = ");
+  const std::size_t end = in.effective.find('\n', begin + 1);
+  if (in.container.mesh == nullptr || begin == std::string::npos || end - begin < shown) return in.effective;
+  return in.effective.substr(0, begin) +
+         fmt::format("\n# surface = the lines of an OBJ file, {} triangles: packs have them",
+                     in.container.mesh->shell().triangles.size()) +
+         in.effective.substr(end);
+}
+
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
   const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
@@ -43,8 +55,8 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
     std::string words = fmt::format(
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
-        scene.in.effective, scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx, ny,
-        scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
+        effective_to_show(scene.in), scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx,
+        ny, scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
         scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
     if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));

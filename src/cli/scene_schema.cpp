@@ -156,6 +156,30 @@ void allow_components(Json& root) {
   root["allOf"] = Json::array({rule});
 }
 
+// [[obstacle]] (input/obstacle_tables.cpp).
+void allow_obstacles(Json& root) {
+  const Json& container = root["properties"]["container"]["properties"];
+  const Json& length = container["height"];
+  const auto said = [&](const char* words) {
+    Json one = length;
+    one["description"] = words;
+    return one;
+  };
+  const auto three = [](Json one) {
+    return Json{{"type", "array"}, {"items", std::move(one)}, {"minItems", 3}, {"maxItems", 3}};
+  };
+  Json one{{"shape", {{"enum", {"sphere", "cylinder", "box", "mesh"}}}}};
+  one["diameter"] = said("Of a sphere or a cylinder. [m]");
+  one["length"] = said("Of a cylinder, along its axis. [m]");
+  one["axis"] = {{"enum", {"x", "y", "z"}}};
+  one["size"] = three(said("Extents of a box. [m]"));
+  one["file"] = container["file"];
+  one["unit"] = container["unit"];
+  one["position"] = three(said("Of its middle. [m]"));
+  one["position"]["items"].erase("exclusiveMinimum");
+  root["properties"]["obstacle"] = array_of(one, Json::array({"shape"}));
+}
+
 }  // namespace
 
 std::string scene_schema() {
@@ -175,6 +199,7 @@ std::string scene_schema() {
   require_of_layers(root);
   allow_diameters(root["properties"]["particles"]);
   allow_components(root);
+  allow_obstacles(root);
   return root.dump(2) + "\n";
 }
 

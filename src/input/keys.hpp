@@ -25,7 +25,7 @@ using Slot =
     std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*, Vec3*,
                  std::array<double, 2>*, std::vector<double>*, std::vector<Boundary>*, Curve*, SizeDistribution*,
                  Weighting*, ListOrder*, Interpolation*, HeightRule*, RegionRule*, FrictionVelocity*, Tangential*,
-                 Regularisation*, WallStiffness*, StopRule*, TargetState*, Decomposition*, VesselShape*>;
+                 Regularisation*, WallStiffness*, StopRule*, TargetState*, Decomposition*, VesselShape*, Body*, Axis*>;
 
 /// An interval of numbers; infinity and NaN are in none.
 struct Range {

@@ -6,12 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "asked/restitution.hpp"
 #include "base/error.hpp"
-#include "base/text.hpp"
-#include "input/keys.hpp"
-#include "input/restitution.hpp"
-#include "input/values.hpp"
-#include "tables/known_names.hpp"
+#include "input/array_tables.hpp"
 
 namespace packmpi::input {
 
@@ -28,41 +25,6 @@ constexpr std::array<std::string_view, 5> of_particles{"density", "youngs_modulu
                                                        "diameter"};
 constexpr std::array<std::string_view, 6> of_contact{"friction",    "wall_friction",    "damping_ratio",
                                                      "restitution", "rolling_friction", "twisting_friction"};
-
-bool is_in(std::span<const std::string_view> names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-const Table& table_of(const Node& node) { return std::get<Table>(node.value); }
-
-const Node* entry(const Node& node, std::string_view name) {
-  const auto found = std::ranges::find(table_of(node), name, &Entry::name);
-  return found == table_of(node).end() ? nullptr : &found->node;
-}
-
-std::vector<Node> tables_at(Document& document, std::string_view name) {
-  std::optional<Node> node = document.take(name);
-  if (!node) return {};
-  auto* list = std::get_if<List>(&node->value);
-  const bool tables = list != nullptr && std::ranges::all_of(*list, [](const Node& item) {
-                        return std::holds_alternative<Table>(item.value);
-                      });
-  if (!tables) fail(node->place, name, fmt::format("is {}; write [[{}]] above each of them", describe(*node), name));
-  return std::move(*list);
-}
-
-void refuse_unknown_in(const Node& table, std::string_view what, std::span<const std::string_view> names) {
-  for (const Entry& item : table_of(table)) {
-    if (is_in(names, item.name)) continue;
-    std::optional<std::string> words = tables::known_elsewhere(what, item.name);
-    if (!words) {
-      const auto near = text::closest(item.name, std::vector<std::string>(names.begin(), names.end()));
-      words =
-          near ? fmt::format("did you mean \"{}\"?", *near) : fmt::format("[[{}]] has {}", what, joined(names, "and"));
-    }
-    fail(item.node.place, fmt::format("{}.{}", what, toml_string(item.name)), fmt::format("unknown key; {}", *words));
-  }
-}
 
 /// `base`'s entries, and those of the component that `names` has in their place.
 Node merged(const Node* base, const Node& component, std::span<const std::string_view> names) {
@@ -82,19 +44,6 @@ Node merged(const Node* base, const Node& component, std::span<const std::string
                        [&](const Entry& e) { return is_in(names, e.name); });
   return result;
 }
-
-/// A number under a key that no table has.
-double number_at(std::string_view path, const Node& node, const Quantity& quantity, Range range) {
-  double value = 0.0;
-  Input none;
-  Key key{.path = path, .slot = [&value](Input&) -> Slot { return &value; }};
-  key.quantity = &quantity, key.unit = quantity.si, key.range = range;
-  store(key, node, none);
-  return value;
-}
-
-constexpr Range from_zero{0.0, std::numeric_limits<double>::infinity(), false, false};
-constexpr Range above_zero{0.0, std::numeric_limits<double>::infinity(), true, false};
 
 /// A name for tables and files of other codes.
 std::string name_at(std::string_view path, const Node& node) {
@@ -117,14 +66,19 @@ int component_named(const Input& in, std::string_view path, const Node& node) {
 
 /// The component as the only one of a scene.
 Input scene_of(const Node& table, const Node* particles, const Document& document, const std::string& name,
-               const std::string& file) {
+               const Input& in) {
   Document part = document;
+  if (part.find("container.file") != nullptr) {  // which has been read
+    part.erase("container.file");
+    part.put("container.surface", {table.place, in.container.surface});
+    part.put("container.unit", {table.place, in.container.unit});
+  }
   for (const char* other : {"mixture", "start", "target", "confinement", "ensemble", "near_field"})
     (void)part.take(other);
   part.put("particles", merged(particles, table, of_particles));
   part.put("contact", merged(document.find("contact"), table, of_contact));
   try {
-    return parse_part(std::move(part), file);
+    return parse_part(std::move(part), in.file);
   } catch (const Error& error) {
     std::string words = error.what();
     for (std::size_t at = words.find("particles."); at != std::string::npos; at = words.find("particles.", at)) {
@@ -144,7 +98,7 @@ Component component_of(const Node& table, const Node* particles, const Document&
          fmt::format("there is a component {} already; give another name", describe(*name)));
   if (const Node* share = entry(table, "share"))
     one.share = number_at("component.share", *share, tables::ratio, from_zero);
-  const Input part = scene_of(table, particles, document, one.name, in.file);
+  const Input part = scene_of(table, particles, document, one.name, in);
   if (part.particles.radius.distribution == SizeDistribution::list)
     fail(table.place, "component.radius.distribution",
          "\"list\" gives sizes one by one, not of a share; use \"discrete\"");

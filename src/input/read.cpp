@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "asked/mesh_vessel.hpp"
+#include "asked/restitution.hpp"
 #include "asked/vessel.hpp"
 #include "base/error.hpp"
-#include "base/regular_file.hpp"
 #include "base/text.hpp"
 #include "document/document.hpp"
 #include "input/checks.hpp"
@@ -17,7 +17,7 @@
 #include "input/grading.hpp"
 #include "input/keys.hpp"
 #include "input/mixture.hpp"
-#include "input/restitution.hpp"
+#include "input/obstacle_tables.hpp"
 #include "input/values.hpp"
 #include "tables/known_names.hpp"
 
@@ -48,9 +48,9 @@ std::vector<std::string> names_in(std::string_view table) {
   return names;
 }
 
-// Arrays of tables, which are read by input/mixture.cpp.
+// Arrays of tables, which are read by input/mixture.cpp and input/obstacle_tables.cpp.
 std::vector<std::string> with_arrays(std::vector<std::string> names, const std::string& table) {
-  if (table.empty()) names.insert(names.end(), {"component", "pair", "stratum"});
+  if (table.empty()) names.insert(names.end(), {"component", "pair", "stratum", "obstacle"});
   return names;
 }
 
@@ -148,17 +148,6 @@ void read_key(const Key& key, const Document& document, Input& in) {
   }
 }
 
-std::string file_text(const std::string& path, std::string_view what, std::size_t longest = Document::longest_file) {
-  const auto refuse = [&](const std::string& words) { throw Error(ExitCode::bad_input, path + ": " + words); };
-  const RegularFile file(path);
-  const std::string& flaw = file.flaw();
-  if (!flaw.empty()) refuse(flaw + (flaw.starts_with("cannot") ? "; check the path" : fmt::format("; give {}", what)));
-  const std::optional<std::string> text = file.read(0, static_cast<std::int64_t>(longest) + 1);
-  if (!text) refuse("cannot be read to its end; check the file system");
-  if (text->size() > longest) refuse(fmt::format("is longer than {}; is it {}?", text::bytes(longest), what));
-  return *text;
-}
-
 /// A scene may give diameters, [particles.diameter], in place of radii.
 constexpr std::string_view radius_table = "particles.radius", diameter_table = "particles.diameter";
 
@@ -233,30 +222,12 @@ Document with_changes(const std::string& text, const std::string& path, const Ov
   return document;
 }
 
-constexpr std::string_view curve_file_key = "particles.radius.diameter_curve_file";
-constexpr std::string_view list_file_key = "particles.radius.list_file";
-constexpr std::string_view mesh_file_key = "container.file";
-constexpr std::size_t longest_mesh = std::size_t{64} << 20U;  // bytes of its file
-
-// A scene may be a stranger's: it names files beside it only.
-void check_curve_name(const Document& document, std::string_view key, const std::string& name) {
-  const std::filesystem::path path(name);
-  const bool leaves = path.is_absolute() || std::ranges::find(path, "..") != path.end();
-  if (!leaves) return;
-  fail(document.place(key), key,
-       fmt::format("is {}; a {} lies in the scene's folder or below it: give a path from there, without \"..\"",
-                   toml_string(name),
-                   key == curve_file_key  ? "curve"
-                   : key == mesh_file_key ? "mesh"
-                                          : "list"));
-}
-
 /// Puts the CSV file's points where the scene's own would stand, the finest first.
 void take_curve(const Document& document, const std::optional<CurveFile>& file, Input& in) {
   Radius& radius = in.particles.radius;
   std::ranges::stable_sort(radius.diameter_curve, {}, [](const auto& point) { return point[0]; });
   if (radius.diameter_curve_file.empty()) return;
-  check_curve_name(document, curve_file_key, radius.diameter_curve_file);
+  check_name(document.place(curve_file_key), curve_file_key, radius.diameter_curve_file, "curve");
   if (!radius.diameter_curve.empty()) {
     fail(document.place(curve_file_key), curve_file_key, "there is a diameter_curve, too; remove one of them");
   }
@@ -275,7 +246,7 @@ void take_list(const Document& document, const std::optional<CurveFile>& file, I
   Radius& radius = in.particles.radius;
   if (radius.distribution != SizeDistribution::list) return;
   if (!radius.list_file.empty()) {
-    check_curve_name(document, list_file_key, radius.list_file);
+    check_name(document.place(list_file_key), list_file_key, radius.list_file, "list");
     if (!radius.radii.empty()) {
       fail(document.place(list_file_key), list_file_key, "there are radii, too; remove one of them");
     }
@@ -305,8 +276,7 @@ void take_restitution(const Document& document, Contact& contact) {
   contact.damping_ratio = damping;
 }
 
-void read_document(const Document& document, const std::optional<CurveFile>& curve,
-                   const std::optional<CurveFile>& mesh, const MixtureTables& mixture, Input& in) {
+void read_document(const Document& document, const NamedFiles& files, const MixtureTables& mixture, Input& in) {
   refuse_unknown(document.root(), "");
   if (document.find("near_field") != nullptr) in.near_field.emplace();
   if (document.find("start") != nullptr) in.start.emplace();
@@ -317,12 +287,12 @@ void read_document(const Document& document, const std::optional<CurveFile>& cur
     if (key.path == "container.size") check_shape(in, document);
     read_key(key, document, in);
   }
-  if (!in.container.file.empty()) check_curve_name(document, mesh_file_key, in.container.file);
-  take_mesh(document, mesh, in);
+  if (!in.container.file.empty()) check_name(document.place(mesh_file_key), mesh_file_key, in.container.file, "mesh");
+  take_mesh(document, files.surfaces, in);
   take_vessel(in.container);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
-  take_curve(document, curve, in);
-  take_list(document, curve, in);
+  take_curve(document, files.curve, in);
+  take_list(document, files.curve, in);
   take_restitution(document, in.contact);
   try {
     if (in.components.empty()) check_radii(in, document);
@@ -351,42 +321,24 @@ std::string effective_of(Input in) {
   return text + effective_mixture(in);
 }
 
-std::optional<CurveFile> named_curve(const std::string& text, const std::string& path, const Overrides& overrides) {
+NamedFiles named_files(const std::string& text, const std::string& path, const Overrides& overrides) {
   Document document = with_changes(text, path, overrides);
   rename_diameters(document);
-  const std::string_view key = document.find(list_file_key) != nullptr ? list_file_key : curve_file_key;
-  const Node* node = document.find(key);
-  const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
-  const bool both = document.find(key == curve_file_key ? "particles.radius.diameter_curve"
-                                                        : "particles.radius.radii") != nullptr;  // parse() refuses that
-  if (name == nullptr || name->empty() || both) return std::nullopt;
-  check_curve_name(document, key, *name);
-  const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
-  return CurveFile{file, file_text(file, "a CSV file")};
+  const std::vector<Obstacle> obstacles = take_obstacle_tables(document);
+  return read_named(document, obstacles, path);
 }
 
-std::optional<CurveFile> named_mesh(const std::string& text, const std::string& path, const Overrides& overrides) {
-  const Document document = with_changes(text, path, overrides);
-  const Node* node = document.find(mesh_file_key);
-  const Node* shape = document.find("container.shape");
-  const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value);
-  if (name == nullptr || name->empty() || shape == nullptr || describe(*shape) != "\"mesh\"") return std::nullopt;
-  check_curve_name(document, mesh_file_key, *name);
-  const std::string file = (std::filesystem::path(path).parent_path() / *name).string();
-  return CurveFile{file, file_text(file, "an STL or OBJ file", longest_mesh)};
-}
-
-Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
-            const std::optional<CurveFile>& curve, const std::optional<CurveFile>& mesh) {
+Input parse(const std::string& text, const std::string& path, const Overrides& overrides, const NamedFiles& files) {
   Document document = with_changes(text, path, overrides);
   const MixtureTables mixture = split_mixture(document);
   Input in;
   in.file = path;
   in.name = std::filesystem::path(path).stem().string();
+  in.obstacles = take_obstacle_tables(document);
   in.particles.radius.diameters = rename_diameters(document);
   take_size_of_cylinder(document);
   try {
-    read_document(document, curve, mesh, mixture, in);
+    read_document(document, files, mixture, in);
   } catch (const Error& error) {
     if (!in.particles.radius.diameters) throw;
     throw Error(error.code(), in_diameters(error.what()));
@@ -400,25 +352,22 @@ Input parse_part(Document document, const std::string& path) {
   Input in;
   in.file = path;
   in.particles.radius.diameters = rename_diameters(document);
-  read_document(document, std::nullopt, std::nullopt, {}, in);
+  read_document(document, {}, {}, in);
   return in;
 }
 
 Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides) {
   std::string text;
-  CurveFile curve, mesh;
+  NamedFiles files;
   comm::agree_on(comm, [&] {
     if (comm.rank() != 0) return;
-    text = file_text(path, "a scene file (.toml)");
-    curve = named_curve(text, path, overrides).value_or(CurveFile{});
-    mesh = named_mesh(text, path, overrides).value_or(CurveFile{});
+    text = file_text(path, "a scene file (.toml)", Document::longest_file);
+    files = named_files(text, path, overrides);
   });
   text = comm.broadcast(0, text);
-  curve = {comm.broadcast(0, curve.path), comm.broadcast(0, curve.text)};
-  mesh = {comm.broadcast(0, mesh.path), comm.broadcast(0, mesh.text)};
-  const auto present = [](const CurveFile& file) { return file.path.empty() ? std::nullopt : std::optional(file); };
+  files = broadcast(comm, files);
   Input in;
-  comm::agree_on(comm, [&] { in = parse(text, path, overrides, present(curve), present(mesh)); });
+  comm::agree_on(comm, [&] { in = parse(text, path, overrides, files); });
   return in;
 }
 

@@ -1,16 +1,13 @@
 /// From a TOML file to a checked Input.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "asked/named_files.hpp"
 #include "comm/comm.hpp"
 #include "input/input.hpp"
-#include "tables/sieve_table.hpp"
 
 namespace packmpi::input {
-
-using tables::CurveFile;
 
 /// What the command line changes of the file.
 struct Overrides {
@@ -22,19 +19,13 @@ struct Overrides {
 /// single keys and cross-checks that need no rank count are done here (input/checks.cpp).
 [[nodiscard]] Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides);
 
-/// Rank-local part of read(): parse `text` as if it were the file `path`, `curve` the CSV file that it names, and
-/// `mesh` the surface. For tests and fuzzing. Throws Error(bad_input).
+/// Rank-local part of read(): parse `text` as if it were the file `path`, with the files that it names. For tests and
+/// fuzzing. Throws Error(bad_input).
 [[nodiscard]] Input parse(const std::string& text, const std::string& path, const Overrides& overrides,
-                          const std::optional<CurveFile>& curve = {}, const std::optional<CurveFile>& mesh = {});
+                          const NamedFiles& files = {});
 
-/// The CSV file that a scene names (particles.radius.diameter_curve_file or list_file), read from the scene's folder;
-/// none: it names none. Local. Throws Error(bad_input).
-[[nodiscard]] std::optional<CurveFile> named_curve(const std::string& text, const std::string& path,
-                                                   const Overrides& overrides);
-
-/// The same of the surface that a scene names (container.file).
-[[nodiscard]] std::optional<CurveFile> named_mesh(const std::string& text, const std::string& path,
-                                                  const Overrides& overrides);
+/// The files that a scene names, read from the scene's folder. Local. Throws Error(bad_input).
+[[nodiscard]] NamedFiles named_files(const std::string& text, const std::string& path, const Overrides& overrides);
 
 /// The scene with every default filled in, as TOML, of an Input that was changed. Reading it gives the same scene and
 /// the same text. Local.

@@ -14,6 +14,10 @@ template <>
 inline constexpr std::array<std::string_view, 7> words_of<VesselShape>{"box",     "cylinder", "frustum", "sphere",
                                                                        "annulus", "prism",    "mesh"};
 template <>
+inline constexpr std::array<std::string_view, 4> words_of<Body>{"sphere", "cylinder", "box", "mesh"};
+template <>
+inline constexpr std::array<std::string_view, 3> words_of<Axis>{"x", "y", "z"};
+template <>
 inline constexpr std::array<std::string_view, 2> words_of<Boundary>{"wall", "periodic"};
 template <>
 inline constexpr std::array<std::string_view, 9> words_of<SizeDistribution>{

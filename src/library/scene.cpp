@@ -24,9 +24,7 @@ Scene Scene::from_file(const std::string& path, const std::vector<std::string>& 
 }
 
 Scene Scene::from_text(const std::string& text, const std::string& path, const std::vector<std::string>& set) {
-  return Scene(read_here(path, [&] {
-    return input::parse(text, path, {set}, input::named_curve(text, path, {set}), input::named_mesh(text, path, {set}));
-  }));
+  return Scene(read_here(path, [&] { return input::parse(text, path, {set}, input::named_files(text, path, {set})); }));
 }
 
 const std::string& Scene::name() const noexcept { return input_->name; }

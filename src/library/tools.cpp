@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "asked/restitution.hpp"
 #include "exporters/convert.hpp"
 #include "forecast/advice.hpp"
 #include "forecast/estimate.hpp"
 #include "input/input.hpp"
-#include "input/restitution.hpp"
 #include "library/failure.hpp"
 #include "packmpi/run.hpp"
 #include "run/analyze.hpp"

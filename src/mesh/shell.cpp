@@ -242,6 +242,23 @@ void look_outside(Shell& shell, const std::vector<int>& part, const std::string&
   }
 }
 
+/// Numbers points as they come up in the triangles, so that what is written and read again is the same.
+void number_points(Shell& shell) {
+  std::vector<int> number(shell.points.size(), -1);
+  std::vector<Vec3> points;
+  for (auto& triangle : shell.triangles) {
+    for (int& point : triangle) {
+      int& now = number[at(point)];
+      if (now < 0) {
+        now = static_cast<int>(points.size());
+        points.push_back(shell.points[at(point)]);
+      }
+      point = now;
+    }
+  }
+  shell.points = std::move(points);
+}
+
 }  // namespace
 
 double angle_of(double x, double y) noexcept {
@@ -251,6 +268,12 @@ double angle_of(double x, double y) noexcept {
   const double small =
       across <= along ? elementary::arcsine(across) : 0.5 * std::numbers::pi - elementary::arcsine(along);
   return x >= 0.0 ? small : std::numbers::pi - small;
+}
+
+double Shell::volume() const {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) sum += six_volumes(corners(t), points.front()) / 6.0;
+  return sum;
 }
 
 Vec3 Shell::normal(std::size_t triangle) const {
@@ -293,6 +316,7 @@ Shell close(const std::vector<Corners>& triangles, const std::string& name) {
   for (std::size_t t = 0; t < before.size(); ++t) {
     shell.mended.turned += static_cast<int>(before[t] != shell.triangles[t]);
   }
+  number_points(shell);
   if (const auto [one, other] = first_crossing(shell); one >= 0) {
     refuse_shell(name, fmt::format("the surface cuts itself: the triangle at {} and that at {} meet; mend it in the "
                                    "program that made it",

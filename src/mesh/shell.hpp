@@ -30,6 +30,7 @@ struct Shell {
     return {points[static_cast<std::size_t>(t[0])], points[static_cast<std::size_t>(t[1])],
             points[static_cast<std::size_t>(t[2])]};
   }
+  [[nodiscard]] double volume() const;                    ///< [m3] of the room
   [[nodiscard]] Vec3 normal(std::size_t triangle) const;  ///< out of the room, twice as long as the area [m2]
   /// Not higher than the tolerance: it has a place in the surface, and no plane of its own.
   [[nodiscard]] bool is_needle(std::size_t triangle) const;

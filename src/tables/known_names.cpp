@@ -26,6 +26,9 @@ constexpr std::string_view strata =
 constexpr std::string_view shaking =
     "not in this version; a denser bed is asked for by [target], which fills it in with less friction";
 
+constexpr std::string_view bodies =
+    "what stands or hangs in the container is an [[obstacle]] table each (doc/vessels.md)";
+
 // The first that is part of the name holds.
 constexpr std::array all{
     Known{"static", "",
@@ -49,6 +52,9 @@ constexpr std::array all{
     Known{"material", "", materials},
     Known{"species", "", materials},
     Known{"strat", "", strata},
+    Known{"obstacle", "container", bodies},
+    Known{"internals", "", bodies},
+    Known{"baffle", "", bodies},
     Known{"pressure", "confinement", stress},
     Known{"servo", "confinement", stress},
     Known{"piston", "confinement", stress},

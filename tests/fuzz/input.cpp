@@ -21,7 +21,7 @@ const std::string scene_name = "scene.toml", curve_name = "curve.csv", effective
 
 struct Case {
   std::string scene;
-  std::optional<input::CurveFile> curve;
+  input::NamedFiles files;
   input::Overrides overrides;
 };
 
@@ -34,8 +34,8 @@ Case case_of(const std::string& text) {
     begin = end + mark.size();
   }
   if (parts.empty()) parts.emplace_back();
-  Case scene{parts[0], std::nullopt, {}};
-  if (parts.size() > 1 && !parts[1].empty()) scene.curve = input::CurveFile{curve_name, parts[1]};
+  Case scene{parts[0], {}, {}};
+  if (parts.size() > 1 && !parts[1].empty()) scene.files.curve = input::CurveFile{curve_name, parts[1]};
   for (std::size_t k = 2; k < parts.size(); ++k) scene.overrides.set.push_back(parts[k]);
   return scene;
 }
@@ -161,7 +161,7 @@ void check_accepted(const Case& scene, const input::Input& in) {
 void try_scene(const std::string& text) {
   const Case scene = case_of(text);
   input::Input in;
-  if (!accepted([&] { in = input::parse(scene.scene, scene_name, scene.overrides, scene.curve); })) return;
+  if (!accepted([&] { in = input::parse(scene.scene, scene_name, scene.overrides, scene.files); })) return;
   check_accepted(scene, in);
   (void)accepted([&] { (void)scene::build(in); });
 }

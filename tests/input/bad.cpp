@@ -159,7 +159,7 @@ TEST(BadInput, FinesOfWhichNothingIsKnown) {
       "particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = \"g.csv\" }";
   const CurveFile file{"g.csv", "sieve_mm,mass_retained_g\n40,0\n20,150\n10,40\npan,10\n"};
   EXPECT_EQ(
-      complaint([&] { (void)parse(good, "good.toml", {{scene}}, file); }),
+      complaint([&] { (void)parse(good, "good.toml", {{scene}}, {.curve = file}); }),
       "g.csv: the curve begins at 5 percent; begin with the diameter that nothing passes, 0 percent, or leave the "
       "finest out: keep_percent = [5, 100]");
 }
@@ -168,7 +168,7 @@ TEST(BadInput, AGradingFileLiesBesideTheScene) {
   for (const std::string name : {"/etc/passwd", "../a.csv", "a/../../b.csv", ".."}) {
     const std::string set =
         "particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = \"" + name + "\" }";
-    EXPECT_EQ(complaint([&] { (void)named_curve("[particles]\n", "x/a.toml", {{set}}); }),
+    EXPECT_EQ(complaint([&] { (void)named_files("[particles]\n", "x/a.toml", {{set}}); }),
               "--set " + set + ": particles.radius.diameter_curve_file: is \"" + name +
                   "\"; a curve lies in the scene's folder or below it: give a path from there, without \"..\"");
   }

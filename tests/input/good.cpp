@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "asked/restitution.hpp"
 #include "asked/vessel.hpp"
 #include "cli/starter.hpp"
 #include "input/fidelity.hpp"
@@ -17,7 +18,6 @@
 #include "input/keys.hpp"
 #include "input/radius_range.hpp"
 #include "input/read.hpp"
-#include "input/restitution.hpp"
 #include "input/time_step.hpp"
 #include "tables/rhythm.hpp"
 #include "tables/sieve_table.hpp"
@@ -485,7 +485,7 @@ TEST(GoodInput, UniformRadii) {
 
 /// The radii of a scene with this radius table.
 Radius radius_of(const std::string& table, const std::optional<CurveFile>& curve = {}) {
-  const Input in = parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, curve);
+  const Input in = parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, {.curve = curve});
   EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective) << table;
   return in.particles.radius;
 }
@@ -569,7 +569,7 @@ TEST(GoodInput, WhatPassesTheFinestSieveMayBeLeftOut) {
   EXPECT_EQ(radius.diameter_curve, (Curve{{0.01, 5.0}, {0.02, 25.0}, {0.04, 100.0}}));
   EXPECT_EQ(kept_curve(radius).front(), (std::array<double, 2>{0.01, 0.0}));
   EXPECT_EQ(
-      parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, file).remarks,
+      parse(least, "a.toml", {{"particles.radius={ " + table + " }"}}, {.curve = file}).remarks,
       std::vector<std::string>{"g.csv: read as mass, retained by sieve over diameters in mm, coarsest first, with a "
                                "pan: 3 sieves, diameters 0.01 to 0.04 m"});
 }
@@ -602,7 +602,7 @@ TEST(GoodInput, AListOfSizesIsANumberOfParticles) {
                        "no;diameter_mm;mass_g\r\n1;20,5;3\r\n2;40;4\r\n3;20,5;3\r\n"};
   const std::string table =
       "particles.radius={ distribution = \"list\", list_file = \"grains.csv\", order = \"file\" }";
-  const Input in = parse(least, "a.toml", {{table}}, file);
+  const Input in = parse(least, "a.toml", {{table}}, {.curve = file});
   EXPECT_EQ(in.particles.radius.radii, (std::vector<double>{0.01025, 0.02, 0.01025}));
   EXPECT_EQ(in.particles.count, 3);
   EXPECT_EQ(in.remarks, std::vector<std::string>{"grains.csv: read as diameters in mm, decimal commas, with a "
@@ -628,6 +628,44 @@ TEST(GoodInput, ACylinderHasADiameterAndAHeight) {
   EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective);
   const std::string by_size = in_vessel("shape = \"cylinder\"\nsize = [\"80 cm\", \"80 cm\", 0.5]");
   EXPECT_EQ(parse(by_size, "a.toml", {}).effective, in.effective);
+}
+
+/// A tetrahedron of volume 1/6, in the file's unit.
+const char* const tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+TEST(GoodInput, ObstaclesAreHolesOfAMesh) {
+  const std::string box = "size = [1.0, 1.0, 0.5]";
+  const std::string bodies =
+      "[[obstacle]]\nshape = \"sphere\"\ndiameter = \"20 cm\"\nposition = [0.3, 0.3, 0.2]\n"
+      "[[obstacle]]\nshape = \"cylinder\"\naxis = \"y\"\ndiameter = 0.1\nlength = 0.9\nposition = [0.8, 0.5, 0.2]\n"
+      "[[obstacle]]\nshape = \"box\"\nsize = [0.2, 0.1, \"300 mm\"]\nposition = [0.3, 0.7, 0.16]\n"
+      "[[obstacle]]\nshape = \"mesh\"\nfile = \"parts/t.obj\"\nunit = \"cm\"\nposition = [0.5, 0.5, 0.4]\n";
+  const NamedFiles files{.surfaces = {{"there/parts/t.obj", tetrahedron}}};
+  const auto volume_without = [&](const std::string& vessel) {
+    const Input in = parse(in_vessel(vessel) + bodies, "there/a.toml", {}, files);
+    EXPECT_EQ(in.container.shape, VesselShape::mesh);
+    EXPECT_TRUE(in.obstacles.empty());
+    EXPECT_EQ(in.container.size.back(), 0.5);
+    EXPECT_TRUE(parse(in.effective, "b.toml", {}).effective == in.effective) << "it needs no file";
+    const double bodies_in_it =
+        std::numbers::pi / 6.0 * 0.008 + 0.25 * std::numbers::pi * 0.01 * 0.9 + 0.2 * 0.1 * 0.3 + 1e-6 / 6.0;
+    return in.container.mesh->volume() + bodies_in_it;
+  };
+  EXPECT_NEAR(volume_without(box), 0.5, 1e-12);
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR(volume_without("shape = \"cylinder\"\ndiameter = 1.3\nheight = 0.5"), 0.125 * 1.69 * pi, 1e-12);
+  EXPECT_NEAR(volume_without("shape = \"frustum\"\nbottom_diameter = 1.4\ntop_diameter = 1.3\nheight = 0.5"),
+              pi / 24.0 * (1.96 + 1.82 + 1.69), 1e-12);
+}
+
+TEST(GoodInput, ComponentsGoIntoAMeshOfAFile) {
+  const NamedFiles files{.surfaces = {{"there/t.obj", tetrahedron}}};
+  const std::string two =
+      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = 1\ndensity = 2000.0\n";
+  const Input in =
+      parse(in_vessel("shape = \"mesh\"\nfile = \"t.obj\"\nheight = 0.5") + two, "there/a.toml", {}, files);
+  EXPECT_EQ(in.components.size(), 2U);
+  EXPECT_NEAR(in.container.mesh->volume(), 1.0 / 6.0, 1e-12);
 }
 
 TEST(GoodInput, WhatIsSetOfACylinderWins) {

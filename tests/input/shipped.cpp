@@ -28,7 +28,7 @@ TEST(Scenes, AreAllGood) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
     const std::string text = text_of(entry.path()), path = entry.path().string();
-    const Input in = parse(text, path, {}, named_curve(text, path, {}), named_mesh(text, path, {}));
+    const Input in = parse(text, path, {}, named_files(text, path, {}));
     EXPECT_EQ(parse(in.effective, "a.toml", {}).effective, in.effective) << entry.path();
   }
   EXPECT_GE(count, 8);

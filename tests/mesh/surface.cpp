@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "geometry/cut_volume.hpp"
+#include "mesh/bodies.hpp"
 #include "mesh/shapes.hpp"
 
 namespace packmpi::mesh {
@@ -335,6 +336,26 @@ TEST(VolumeOfSphere, AddsUp) {
   EXPECT_NEAR(ball.volume_of_sphere({0.2, 0.1, 0.0}, 2.0), ball.volume(), 1e-12);
   EXPECT_EQ(ball.volume_of_sphere({0.2, 0.1, 0.0}, 0.5), 4.0 / 3.0 * pi * 0.125);
   EXPECT_EQ(ball.volume_of_sphere({3.2, 0.1, 0.0}, 0.5), 0.0);
+}
+
+/// Bodies of facets are as large as the round ones, closed, and look outside.
+TEST(Bodies, AreAsLargeAsTheRoundOnes) {
+  const auto expect = [](const Soup& soup, double volume, const Vec3& low, const Vec3& high) {
+    const Surface surface(soup, "body");
+    EXPECT_NEAR(surface.volume(), volume, 1e-13 * volume);
+    EXPECT_EQ(surface.shell().mended.turned, 0);
+    EXPECT_EQ(surface.shell().mended.dropped, 0);
+    for (std::size_t a = 0; a < 3; ++a) {
+      EXPECT_NEAR(surface.low()[a], low[a], 2e-3);
+      EXPECT_NEAR(surface.high()[a], high[a], 2e-3);
+    }
+  };
+  expect(prism_over({{0, 0}, {2, 0}, {0, 1}}, 3.0), 3.0, {0, 0, 0}, {2, 1, 3});
+  expect(body_of_revolution({{0, 0}, {0.5, 0}, {0.5, 2}, {0, 2}}), 0.5 * pi, {-0.5, -0.5, 0}, {0.5, 0.5, 2});
+  expect(body_of_revolution({{0, 0}, {0.5, 0}, {1, 2}, {0, 2}}), 2.0 / 3.0 * pi * (0.25 + 0.5 + 1.0), {-1, -1, 0},
+         {1, 1, 2});
+  expect(body_of_revolution({{0.5, 0}, {1, 0}, {1, 2}, {0.5, 2}}), 1.5 * pi, {-1, -1, 0}, {1, 1, 2});
+  expect(sphere_of_facets(0.7), 4.0 / 3.0 * pi * 0.343, {-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7});
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST_F(Counts, AFileOf1085DiametersIsUsedUp) {
   const scene::Scene what = scene::build(
       input::parse(box + layered, "box.toml",
                    {{R"(particles.diameter={ distribution = "list", list_file = "d.csv", order = "file" })"}},
-                   input::CurveFile{"d.csv", text}));
+                   {.curve = input::CurveFile{"d.csv", text}}));
   const report::RunRecord record = make_pack(comm_, what, options("together"));
   EXPECT_EQ(record.particles, 1085);
   const std::vector<double> got = rows().radius;

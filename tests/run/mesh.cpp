@@ -129,5 +129,33 @@ TEST_F(PackInMesh, ABoxOfTrianglesIsTheBox) {
   }
 }
 
+/// Obstacles in a cylinder: the vessel has facets then, and nothing is in a ball, in a bar, or outside.
+TEST_F(PackInMesh, ObstaclesAreLeftOut) {
+  std::string text = text_of(testing::box({0, 0, 0}, {1, 1, 1}), 0.2, "maximum = 2\n");
+  const std::size_t from = text.find("shape ="), length = text.find("[particles]") - from;
+  text.replace(from, length, "shape = \"cylinder\"\ndiameter = 0.16\nheight = 0.2\n");
+  text +=
+      "[[obstacle]]\nshape = \"sphere\"\ndiameter = 0.06\nposition = [0.08, 0.08, 0.032]\n"
+      "[[obstacle]]\nshape = \"cylinder\"\ndiameter = 0.02\naxis = \"x\"\nlength = 0.1\nposition = [0.08, 0.1, 0.08]\n";
+  const scene::Scene scene = scene_of(text);
+  ASSERT_EQ(run(scene, world_.size(), 0, ""), ExitCode::done) << words_;
+  const pack::PackRows first = rows();
+  EXPECT_EQ(run(scene, 1, 0, ""), ExitCode::done);
+  EXPECT_EQ(rows().position, first.position);
+  EXPECT_EQ(record_.audit.outside, 0);
+  ASSERT_GT(first.id.size(), 100U);
+  std::size_t on_ball = 0;
+  for (std::size_t k = 0; k < first.id.size(); ++k) {
+    const Vec3& x = first.position[k];
+    const double r = 0.97 * first.radius[k];
+    const double from_ball = norm(mesh::minus(x, {0.08, 0.08, 0.032})) - 0.03;
+    EXPECT_GT(from_ball, r) << k;
+    on_ball += static_cast<std::size_t>(from_ball < 1.001 * first.radius[k]);
+    EXPECT_LT(std::hypot(x[0] - 0.08, x[1] - 0.08), 0.08 - r) << k;
+    if (x[0] > 0.03 && x[0] < 0.13) EXPECT_GT(std::hypot(x[1] - 0.1, x[2] - 0.08) - 0.01, r) << k;
+  }
+  EXPECT_GT(on_ball, 5U);
+}
+
 }  // namespace
 }  // namespace packmpi::run

@@ -1,4 +1,4 @@
-#include "input/restitution.hpp"
+#include "asked/restitution.hpp"
 
 #include <cmath>
 #include <numbers>

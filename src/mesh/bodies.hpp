@@ -1,0 +1,26 @@
+/// Closed surfaces of simple bodies, of triangles that look outside [m].
+#pragma once
+#include <vector>
+
+#include "mesh/read.hpp"
+
+namespace packmpi::mesh {
+
+/// Facets around a body of revolution, and rings of a sphere from pole to pole.
+inline constexpr int around = 180, around_sphere = 72, rings = 36;
+
+/// A corner of the half of a section through the axis: distance from the axis and height [m].
+using Profile = std::vector<std::array<double, 2>>;
+
+/// A prism over a convex polygon [x, y] that goes round anticlockwise, from z = 0 up to `height`. Pure.
+[[nodiscard]] std::vector<Corners> prism_over(const std::vector<std::array<double, 2>>& polygon, double height);
+
+/// The body that a section makes around the z axis: from a point of the axis up to another, or all around. Its sections
+/// are regular polygons of `facets` corners, a multiple of 4, as large as the circles that they stand for, and turned
+/// so that two corners lie on each axis. Pure.
+[[nodiscard]] std::vector<Corners> body_of_revolution(const Profile& profile, int facets = around);
+
+/// About the origin, as large as the sphere of this radius [m]. Pure.
+[[nodiscard]] std::vector<Corners> sphere_of_facets(double radius);
+
+}  // namespace packmpi::mesh
