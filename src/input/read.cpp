@@ -128,10 +128,19 @@ void refuse_unknown(const Table& table, const std::string& path) {
   }
 }
 
+/// Why a key that does not apply is refused: the scene says otherwise, or a preset that it names does.
+std::string misplaced(const Key& key, const Document& document, const Input& in) {
+  const bool by_preset = key.when.words.starts_with("tangential") && document.find("contact.tangential") == nullptr &&
+                         preset_law(document, "contact.tangential", in).has_value();
+  if (!by_preset) return fmt::format("belongs to {} only; remove it", key.when.words);
+  return fmt::format("belongs to {0} only, and fidelity = \"{1}\" has another; give contact.{0}, too, or remove it",
+                     key.when.words, in.fidelity);
+}
+
 void read_key(const Key& key, const Document& document, Input& in) {
   const Node* node = document.find(key.path);
   if (!key.applies(in)) {
-    if (node != nullptr) fail(node->place, key.path, fmt::format("belongs to {} only; remove it", key.when.words));
+    if (node != nullptr) fail(node->place, key.path, misplaced(key, document, in));
   } else if (node != nullptr) {
     store(key, *node, in);
   } else if (const auto law = preset_law(document, key.path, in)) {
