@@ -17,21 +17,21 @@ struct Reader {
   Obstacle to = {};
 
   /// The entry, which has to be there, or may not.
-  const Node* find(std::string_view name, bool wanted, bool mandatory) const {
+  const Node* find(std::string_view name, bool wanted, bool needed) const {
     const Node* node = entry(table, name);
     const std::string path = fmt::format("obstacle.{}", name);
     const std::string_view shape = word(to.shape);
     if (node != nullptr && !wanted) {
       document::fail(node->place, path, fmt::format("a {} has none; remove it", shape));
     }
-    if (node == nullptr && wanted && mandatory) {
+    if (node == nullptr && wanted && needed) {
       document::fail(table.place, path, fmt::format("is missing; a {} has one", shape));
     }
     return node;
   }
   template <class Value>
-  void read(std::string_view name, bool wanted, bool mandatory, Value& value, Key key) const {
-    const Node* node = find(name, wanted, mandatory);
+  void read(std::string_view name, bool wanted, bool needed, Value& value, Key key) const {
+    const Node* node = find(name, wanted, needed);
     const std::string path = fmt::format("obstacle.{}", name);
     key.path = path;
     if (node != nullptr) store_in(value, key, *node);
@@ -45,8 +45,8 @@ struct Reader {
     read("shape", true, false, to.shape, text);
     if (entry(table, "shape") == nullptr)
       document::fail(table.place, "obstacle.shape", "is missing; give \"sphere\", \"cylinder\", \"box\" or \"mesh\"");
-    const bool round = to.shape == Body::sphere || to.shape == Body::cylinder, mesh = to.shape == Body::mesh;
-    read("diameter", round, true, to.diameter, extent);
+    const bool rounded = to.shape == Body::sphere || to.shape == Body::cylinder, mesh = to.shape == Body::mesh;
+    read("diameter", rounded, true, to.diameter, extent);
     read("length", to.shape == Body::cylinder, true, to.length, extent);
     read("axis", to.shape == Body::cylinder, false, to.axis, text);
     read("size", to.shape == Body::box, true, to.size, extents);
