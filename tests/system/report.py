@@ -56,6 +56,17 @@ VIEW = """(() => {
           sorry: view.querySelector('.sorry').textContent};
 })()"""
 
+# A drag across the view, and what is shown when it is over: all spheres, however few were drawn meanwhile.
+TURN = """new Promise(done => {
+  const canvas = document.querySelector('#view canvas'), box = canvas.getBoundingClientRect();
+  const drag = (type, x) => canvas.dispatchEvent(new PointerEvent(type, {pointerId: 1, clientX: box.left + x, clientY: box.top + 90, buttons: 1, pointerType: 'mouse'}));
+  const before = packmpiView.colours().covered;
+  drag('pointerdown', 60);
+  drag('pointermove', 180);
+  drag('pointerup', 180);
+  setTimeout(() => done([packmpiView.shown(), packmpiView.colours().covered !== before]), 1500);
+})"""
+
 problems = []
 
 
@@ -68,6 +79,8 @@ def check_view(page, path):
     expect(told["spheres"] == count and told["sorry"] == "", f"{name}: the view says {told}")
     whole, half, none, again = (told[which]["covered"] for which in ("whole", "half", "none", "again"))
     expect(0.08 < whole < 0.6 and 0.3 * whole < half < 0.95 * whole and none < 0.02 and again == whole, f"{name}: the view covers {told}")
+    shown, turned = page.value(TURN)
+    expect(shown == count and turned, f"{name}: after a drag {shown} of {count} spheres are shown, turned: {turned}")
     expect(told["whole"]["seen"] > 16, f"{name}: the view has {told['whole']['seen']} colours")
     expect(told["fields"][:3] == ["radius", "contacts", "layer of insertion"] and told["high"] == str(contacts), f"{name}: fields {told}")
 

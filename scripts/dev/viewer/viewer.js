@@ -105,27 +105,35 @@ function begin (place) {
   controls.minZoom = 0.5
   controls.maxZoom = 60
 
-  let waiting = false
+  let waiting = false, turned = false
   function draw () {
     waiting = false
     camera.updateMatrixWorld()
     camera.matrixWorld.extractBasis(uniforms.right.value, uniforms.up.value, uniforms.toViewer.value)
     frame.material.color.set(getComputedStyle(canvas).color)
     renderer.render(scene, camera)
+    if (!turned) return
+    turned = false   // the pause counts from when the frame can be seen, however long it takes
+    requestAnimationFrame(() => requestAnimationFrame(() => { clearTimeout(rest); rest = setTimeout(settle, 250) }))
   }
   function later () {
     if (!waiting) requestAnimationFrame(draw)
     waiting = true
   }
   // Where frames come slowly, a part of the spheres is drawn while the pack is turned (their order is one by chance), and all at its end.
-  let part = 1, before = 0, rest = 0
+  let part = 1, before = -1e9, rest = 0
   function turning () {
     const now = performance.now(), gap = now - before
     before = now
-    if (gap < 2000) part = Math.min(1, Math.max(0.02, part * (gap > 70 ? 0.6 : gap < 25 ? 1.25 : 1)))
+    if (gap < 9000) part = Math.min(1, Math.max(0.02, part * (gap > 70 ? Math.max(0.1, 50 / gap) : gap < 25 ? 1.25 : 1)))
     geometry.instanceCount = Math.ceil(part * count)
     clearTimeout(rest)
-    rest = setTimeout(() => { geometry.instanceCount = count; before = 0; later() }, 250)
+    turned = true
+    later()
+  }
+  function settle () {
+    geometry.instanceCount = count
+    before = -1e9
     later()
   }
   function fit () {
@@ -173,6 +181,7 @@ function begin (place) {
   // For tests: how long a frame takes, drawn and waited for.
   window.packmpiView = {
     spheres: count,
+    shown: () => geometry.instanceCount,
     frame () {
       const pixel = new Uint8Array(4), gl = renderer.getContext(), begun = performance.now()
       geometry.instanceCount = count
