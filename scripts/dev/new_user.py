@@ -61,7 +61,7 @@ def blocks_of(page):
 def title(block):
     """What a table calls a block: its first command, and how many follow."""
     lines = [line for line in block.splitlines() if line.strip() and not line.startswith(("source", "#"))]
-    return f"`{lines[0].split('#')[0].strip()}`" + (f" and {len(lines) - 1} more" if len(lines) > 1 else "")
+    return f"`{lines[0].split('#')[0].split(' || ')[0].strip()}`" + (f" and {len(lines) - 1} more" if len(lines) > 1 else "")
 
 
 def steps(wanted):
