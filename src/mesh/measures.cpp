@@ -161,6 +161,7 @@ double Surface::walls_below(double height) const {
 }
 
 double Surface::volume_below(double height) const {
+  if (height <= shell_.low[2]) return 0.0;
   double sum = 0.0, rest = 0.0;  // Neumaier's
   for (std::size_t t = 0; t < shell_.triangles.size(); ++t) {
     Below below;

@@ -139,12 +139,16 @@ double Surface::off_plane(const Vec3& x, int triangle) const {
   return (1.0 - 1e-9) * (away * away);
 }
 
-// Wrong for the sake of rounding only where the range is a millionth of the triangle.
-bool Surface::may_be_near(const Vec3& x, int triangle, double range) const {
+// Of the disc around it in its plane. Wrong for the sake of rounding only where the range is a millionth of the
+// triangle.
+inline bool Surface::may_be_near(const Vec3& x, int triangle, double range) const {
   const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
   const Vec3 d = minus(x, spot.middle);
-  const double away = dot(spot.normal, d), reach = range + spot.reach;
-  return (1.0 - 1e-9) * (away * away) < range * range && (1.0 - 1e-9) * dot(d, d) < reach * reach;
+  const double away = dot(spot.normal, d), squared = away * away;
+  const double disc = range * range - (1.0 - 1e-9) * squared;
+  if (!(disc > 0.0)) return false;
+  const double reach = spot.reach + std::sqrt(disc);
+  return (1.0 - 1e-9) * dot(d, d) < squared + reach * reach;
 }
 
 Nearest Surface::nearest(const Vec3& x) const {
@@ -225,7 +229,7 @@ void Surface::touches(const Vec3& x, double range, double behind,
   }
 }
 
-// Of a face's triangles the nearest comes first: most often it is the one that is asked for.
+// Of a face's triangles the one with the nearest middle comes first: most often it is the one that is asked for.
 void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
   found.clear();
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
@@ -241,11 +245,9 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
     if (seen == found.search) return;
     seen = found.search;
     if (!may_be_near(x, t, range)) return;
-    if (const double squared = hit(x, t).squared; squared < square) {
-      found.hits.push_back({t, squared});
-    }
+    const Vec3 d = minus(x, spot_[static_cast<std::size_t>(t)].middle);
+    found.hits.push_back({t, dot(d, d)});
   });
-  std::ranges::sort(found.hits, {}, &NearFeatures::Hit::triangle);
   for (const auto& [t, squared] : found.hits) {
     const std::int32_t face = features_.face_of(static_cast<std::size_t>(t));
     const double* plane = table.faces + 4 * std::int64_t{face};

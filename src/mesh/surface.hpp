@@ -24,7 +24,7 @@ struct NearFeatures {
   std::vector<std::int32_t> triangles;
   struct Hit {
     std::int32_t triangle;
-    double squared;  // distance [m2]
+    double squared;  // [m2] to its middle
   };
   std::vector<Hit> hits;            // of the search
   std::vector<std::uint32_t> seen;  // of each triangle: the last search that has looked at it
@@ -86,8 +86,8 @@ class Surface {
   [[nodiscard]] Vec3 draw(const Vec3& u, double r, double low, double high) const;
 
   [[nodiscard]] const Features& features() const { return features_; }
-  /// All features that are nearer to x than `range` [m], and not more than `behind` [m] and the range on the other side
-  /// of x.
+  /// All features that are nearer to x than `range` [m], and some faces that are not; but not more than `behind` [m]
+  /// and the range on the other side of x.
   void near(const Vec3& x, double range, double behind, NearFeatures& found) const;
   /// Where a feature is, seen from x. See Table for `behind`.
   [[nodiscard]] Touch touch_of(std::int32_t feature, const Vec3& x, double behind) const;
