@@ -661,7 +661,8 @@ TEST(GoodInput, ObstaclesAreHolesOfAMesh) {
 TEST(GoodInput, ComponentsGoIntoAMeshOfAFile) {
   const NamedFiles files{.surfaces = {{"there/t.obj", tetrahedron}}};
   const std::string two =
-      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = 1\ndensity = 2000.0\n";
+      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = "
+      "1\ndensity = 2000.0\n";
   const Input in =
       parse(in_vessel("shape = \"mesh\"\nfile = \"t.obj\"\nheight = 0.5") + two, "there/a.toml", {}, files);
   EXPECT_EQ(in.components.size(), 2U);
