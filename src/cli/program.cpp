@@ -7,7 +7,6 @@
 #include <system_error>
 #include <thread>
 
-#include "asked/restitution.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/signals.hpp"
@@ -17,6 +16,7 @@
 #include "cli/info.hpp"
 #include "cli/starter.hpp"
 #include "comm/petsc.hpp"
+#include "config/restitution.hpp"
 #include "disk/text_file.hpp"
 #include "ensemble/ensemble.hpp"
 #include "forecast/advice.hpp"
@@ -30,7 +30,7 @@
 #include "run/make_pack.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi::cli {
 namespace {
@@ -138,7 +138,7 @@ std::string told(const comm::Comm& comm, const Request& request) {
 // Of `run` and `check`.
 int use_scene(const comm::Comm& comm, const Request& request) {
   const Occupation now("the scene and its lateral grid");
-  const input::Input in = source::with_start(comm, input::read(comm, request.run.scene, request.run.overrides));
+  const input::Input in = start::with_start(comm, input::read(comm, request.run.scene, request.run.overrides));
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   expect_memory(forecast::memory_a_rank(scene, comm.size()));

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "asked/restitution.hpp"
 #include "base/error.hpp"
+#include "config/restitution.hpp"
 #include "input/array_tables.hpp"
 
 namespace packmpi::input {

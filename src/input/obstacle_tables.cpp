@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "asked/named_files.hpp"
+#include "config/named_files.hpp"
 #include "input/array_tables.hpp"
 #include "input/words.hpp"
 

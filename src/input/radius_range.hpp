@@ -1,3 +1,3 @@
 /// The structs of a scene, by the name that most files know.
 #pragma once
-#include "asked/radius_range.hpp"
+#include "config/radius_range.hpp"

@@ -6,11 +6,11 @@
 #include <array>
 #include <filesystem>
 
-#include "asked/mesh_vessel.hpp"
-#include "asked/restitution.hpp"
-#include "asked/vessel.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "config/mesh_vessel.hpp"
+#include "config/restitution.hpp"
+#include "config/vessel.hpp"
 #include "document/document.hpp"
 #include "input/checks.hpp"
 #include "input/fidelity.hpp"

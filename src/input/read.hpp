@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "asked/named_files.hpp"
 #include "comm/comm.hpp"
+#include "config/named_files.hpp"
 #include "input/input.hpp"
 
 namespace packmpi::input {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "asked/vessel.hpp"
+#include "config/vessel.hpp"
 #include "document/document.hpp"
 #include "input/input.hpp"
 #include "input/radius_range.hpp"

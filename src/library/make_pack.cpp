@@ -9,7 +9,7 @@
 #include "comm/petsc.hpp"
 #include "comm/session.hpp"
 #include "run/make_pack.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi {
 namespace {
@@ -34,7 +34,7 @@ void refuse_ensemble(const input::Input& in) {
 }
 
 PackResult make(const comm::Comm& comm, const run::Options& options) {
-  const input::Input in = source::with_start(comm, input::read(comm, options.scene, options.overrides));
+  const input::Input in = start::with_start(comm, input::read(comm, options.scene, options.overrides));
   refuse_ensemble(in);
   comm::petsc_options(in.petsc.options);
   const report::RunRecord record = run::make_pack(comm, scene::build(in), options);

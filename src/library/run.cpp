@@ -14,7 +14,7 @@
 #include "library/failure.hpp"
 #include "library/rows.hpp"
 #include "run/make_pack.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi {
 namespace {
@@ -84,7 +84,7 @@ void refuse_several(const Scene& scene) {
 }
 
 void make_here(const comm::Comm& comm, const Scene& what, const RunOptions& options, Guest& guest) {
-  const input::Input in = source::with_start(comm, what.input());
+  const input::Input in = start::with_start(comm, what.input());
   refuse_several(what);
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);
@@ -113,7 +113,7 @@ int make_ensemble(const Scene& scene, MPI_Comm world, const RunOptions& options)
   const comm::Comm comm(world);
   int code = 0;
   const comm::Failure failure = comm::end_together(comm, [&] {
-    const input::Input in = source::with_start(comm, scene.input());
+    const input::Input in = start::with_start(comm, scene.input());
     comm::petsc_options(in.petsc.options);
     log::start(comm.rank(), std::nullopt, log::Verbosity::quiet);
     code = ensemble::make_ensemble(comm, in, run_options_of(scene, options));

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "asked/restitution.hpp"
+#include "config/restitution.hpp"
 #include "exporters/convert.hpp"
 #include "forecast/advice.hpp"
 #include "forecast/estimate.hpp"
@@ -13,7 +13,7 @@
 #include "packmpi/run.hpp"
 #include "run/analyze.hpp"
 #include "scene/ownership.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi {
 namespace {
@@ -46,7 +46,7 @@ std::string check(const Scene& what, MPI_Comm world) {
   const comm::Comm comm(world);
   std::string words;
   library::together(comm, what.file(), [&] {
-    const scene::Scene scene = scene::build(source::with_start(comm, what.input()));
+    const scene::Scene scene = scene::build(start::with_start(comm, what.input()));
     comm::agree_on(comm, [&] { words = check_words(scene); });
   });
   return words;

@@ -13,7 +13,7 @@
 #include "run/settle.hpp"
 #include "scene/expectation.hpp"
 #include "scene/limits.hpp"
-#include "source/taken.hpp"
+#include "start/taken.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -133,7 +133,7 @@ double sinks_by(const input::Input& in) {
 // The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
 // too few costs a second final stage, in which all that lies there creeps again.
 double final_height(const scene::Scene& scene, const pack::Progress& at) {
-  if (!(scene.relaxation > 0.0) || at.layers.empty() || source::is_taken_over(at.layers.back())) return at.height;
+  if (!(scene.relaxation > 0.0) || at.layers.empty() || start::is_taken_over(at.layers.back())) return at.height;
   const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
   if (over) return at.height;
   return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);

@@ -11,7 +11,7 @@
 #include "packmpi/version.hpp"
 #include "report/judge.hpp"
 #include "run/search.hpp"
-#include "source/taken.hpp"
+#include "start/taken.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -123,7 +123,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
                    : record.insertion_alone ? !at.layers.empty()
                    : weighed                ? !control::wants_mass(scene, at.mixing)
                                             : full || at.height >= record.target_height;
-  record.start = source::taken_words(scene, at);
+  record.start = start::taken_words(scene, at);
   record.stop_reason = counted && record.reached   ? "count"
                        : record.insertion_alone    ? "fraction"
                        : full                      ? "full"
@@ -158,7 +158,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   record.confined = confine::measure(comm, bed.store, scene, bed.neighborhood, at.confined);
   audit(bed, record);
   record.criteria = report::judge(scene, record.rest);
-  if (scene.in.start && at.steps == 0 && source::lacks_springs(scene, at)) forget_limits_of_rest(record.criteria);
+  if (scene.in.start && at.steps == 0 && start::lacks_springs(scene, at)) forget_limits_of_rest(record.criteria);
   record.missed = report::missed_targets(scene, record);
   record.targets_met = record.missed.empty();
 }

@@ -13,9 +13,9 @@
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
 #include "report/json_seal.hpp"
-#include "source/fit.hpp"
-#include "source/mixture.hpp"
-#include "source/taken.hpp"
+#include "start/fit.hpp"
+#include "start/mixture.hpp"
+#include "start/taken.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -30,7 +30,7 @@ void add_particles(const pack::PackRows& rows, particles::Store& store) {
 // Collective. What its contacts remember goes on if it is there and the law is the same; whether it does.
 bool take_springs(const std::string& path, const input::Input& made, Bed& bed) {
   const scene::Features& wanted = bed.scene.features;
-  if (!wanted.memory || source::feels_anew(made, bed.scene)) return false;
+  if (!wanted.memory || start::feels_anew(made, bed.scene)) return false;
   const pack::Histories found = pack::histories_of(bed.comm, path, bed.scene);
   if (!found.any() || found.features.rolling != wanted.rolling) return false;
   bed.give(found);
@@ -57,7 +57,7 @@ void set_progress(Bed& bed, const std::vector<GlobalId>& first_ids, const std::s
 
 // "particles 3 and 17 at (0.1, 0.2, 0.3) m", and the lines of a text file where they stand. Collective; the pair with
 // the deepest overlap, or the particle deepest in a wall.
-std::string worst_of(const Bed& bed, const source::TextRows& read) {
+std::string worst_of(const Bed& bed, const start::TextRows& read) {
   const observe::Deepest worst =
       observe::deepest(bed.comm, bed.store, bed.scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   std::array<std::int64_t, 2> lines{0, 0};
@@ -87,19 +87,19 @@ void check_number(const Bed& bed) {
 }
 
 // The worst overlap. Throws if it is beyond what may be relaxed.
-double check_overlaps(const Bed& bed, const source::TextRows& read) {
+double check_overlaps(const Bed& bed, const start::TextRows& read) {
   const scene::Scene& scene = bed.scene;
   const observe::Validity valid = observe::validity(bed.comm, bed.store, scene);
   if (valid.outside > 0) {
-    source::refuse(scene, fmt::format("start.pack: {} particles have centres outside the container, whose corner is at "
-                                      "0 and whose floor is at {} = 0",
-                                      valid.outside, "xyz"[scene.container.vertical()]));
+    start::refuse(scene, fmt::format("start.pack: {} particles have centres outside the container, whose corner is at "
+                                     "0 and whose floor is at {} = 0",
+                                     valid.outside, "xyz"[scene.container.vertical()]));
   }
   const observe::Contacts touching =
       observe::contacts(bed.comm, bed.store, scene, bed.neighborhood.pairs(), bed.neighborhood.walls());
   const double worst = std::max(touching.max_overlap, touching.max_wall_penetration);
   if (worst > scene.in.start->overlap) {
-    source::refuse(
+    start::refuse(
         scene,
         fmt::format("start.pack: its deepest overlap is {:.3g} radii, of {}; start.overlap_limit is {:g}: raise that, "
                     "or give a pack that is at rest",
@@ -109,22 +109,22 @@ double check_overlaps(const Bed& bed, const source::TextRows& read) {
 }
 
 // Particles of a CSV or LAMMPS file, in one layer that has forgotten all else.
-double take_text(Bed& bed, const std::string& path, source::Kind kind) {
+double take_text(Bed& bed, const std::string& path, start::Kind kind) {
   const scene::Scene& scene = bed.scene;
-  source::TextRows read;
+  start::TextRows read;
   comm::agree_on(bed.comm, [&] {
-    source::check_one_material(scene);
+    start::check_one_material(scene);
     const int dimension = scene.container.dimension;
-    read = kind == source::Kind::csv ? source::read_csv(path, dimension, bed.comm.rank(), bed.comm.size())
-                                     : source::read_lammps(path, dimension, bed.comm.rank(), bed.comm.size());
-    if (report::hexadecimal(source::digest_of_text(path)) != scene.in.start->digest)
-      source::refuse(scene, "start.pack: was changed while it was read");
-    source::fit_rows(scene, read);
+    read = kind == start::Kind::csv ? start::read_csv(path, dimension, bed.comm.rank(), bed.comm.size())
+                                    : start::read_lammps(path, dimension, bed.comm.rank(), bed.comm.size());
+    if (report::hexadecimal(start::digest_of_text(path)) != scene.in.start->digest)
+      start::refuse(scene, "start.pack: was changed while it was read");
+    start::fit_rows(scene, read);
   });
   add_particles(read.rows, bed.store);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
-  set_progress(bed, {0}, source::reason_of_text(read));
+  set_progress(bed, {0}, start::reason_of_text(read));
   bed.progress.now = {.phase = pack::Phase::relaxation};
   return check_overlaps(bed, read);
 }
@@ -136,15 +136,15 @@ double take_pack(Bed& bed, const std::string& path) {
   input::Input made;
   comm::agree_on(bed.comm, [&] {
     if (report::hexadecimal(seal) != scene.in.start->digest)
-      source::refuse(scene, "start.pack: was changed while it was read");
+      start::refuse(scene, "start.pack: was changed while it was read");
     slice = pack::read_slice(path, bed.comm.rank(), bed.comm.size());
     made = input::parse(slice.scene, path, {});
-    source::check_fit(scene, made, slice);
+    start::check_fit(scene, made, slice);
   });
   add_particles(slice.rows, bed.store);
-  const std::vector<GlobalId> first_ids = source::first_ids_of(bed.comm, slice.rows);
+  const std::vector<GlobalId> first_ids = start::first_ids_of(bed.comm, slice.rows);
   if (scene.features.mixture) {
-    bed.progress.mixing = source::mixing_of(bed.comm, scene, slice.rows, first_ids);
+    bed.progress.mixing = start::mixing_of(bed.comm, scene, slice.rows, first_ids);
     bed.progress.first_ids = first_ids;
     bed.mark_components();
   }
@@ -152,21 +152,21 @@ double take_pack(Bed& bed, const std::string& path) {
   const bool springs = take_springs(path, made, bed);
   bed.neighborhood.rebuild(bed.store);  // to the owners of their columns
   bed.balance();
-  set_progress(bed, first_ids, source::reason_of_pack(springs));
-  if (source::feels_anew(made, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
+  set_progress(bed, first_ids, start::reason_of_pack(springs));
+  if (start::feels_anew(made, scene)) bed.progress.now = {.phase = pack::Phase::relaxation};
   return check_overlaps(bed, {});
 }
 
 }  // namespace
 
 void take_over(Bed& bed) {
-  const std::string path = source::path_of(bed.scene.in);
-  source::Kind kind{};
-  comm::agree_on(bed.comm, [&] { kind = source::kind_of(path); });
-  const double worst = kind == source::Kind::pack ? take_pack(bed, path) : take_text(bed, path, kind);
+  const std::string path = start::path_of(bed.scene.in);
+  start::Kind kind{};
+  comm::agree_on(bed.comm, [&] { kind = start::kind_of(path); });
+  const double worst = kind == start::Kind::pack ? take_pack(bed, path) : take_text(bed, path, kind);
   check_number(bed);
   log::info(fmt::format("start: {}; deepest overlap {:.2e} radii, height {:.4g} m",
-                        source::taken_words(bed.scene, bed.progress), worst, bed.progress.height));
+                        start::taken_words(bed.scene, bed.progress), worst, bed.progress.height));
 }
 
 }  // namespace packmpi::run

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "asked/vessel.hpp"
 #include "base/error.hpp"
+#include "config/vessel.hpp"
 #include "geometry/volume.hpp"
 #include "input/time_step.hpp"
 #include "scene/expectation.hpp"

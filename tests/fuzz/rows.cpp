@@ -15,7 +15,7 @@
 
 #include "base/error.hpp"
 #include "fuzz/demand.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_rows.hpp"
 
 namespace packmpi::fuzz {
 namespace {
@@ -28,7 +28,7 @@ struct Row {
   bool operator==(const Row&) const = default;
 };
 
-std::vector<Row> rows_of(const source::TextRows& read) {
+std::vector<Row> rows_of(const start::TextRows& read) {
   std::vector<Row> rows;
   for (std::size_t k = 0; k < read.rows.id.size(); ++k) {
     rows.push_back({read.rows.id[k], read.line[k], read.rows.radius[k], read.rows.position[k], read.rows.velocity[k],
@@ -37,7 +37,7 @@ std::vector<Row> rows_of(const source::TextRows& read) {
   return rows;
 }
 
-void check_rows(const source::TextRows& read) {
+void check_rows(const start::TextRows& read) {
   demand(std::cmp_equal(read.total, read.rows.id.size()), "another number of rows than said");
   for (std::size_t k = 0; k < read.rows.id.size(); ++k) {
     const Vec3& x = read.rows.position[k];
@@ -46,9 +46,9 @@ void check_rows(const source::TextRows& read) {
   }
 }
 
-source::TextRows read(const std::string& path, int dimension, Rank rank, int ranks) {
-  return source::kind_of(path) == source::Kind::lammps ? source::read_lammps(path, dimension, rank, ranks)
-                                                       : source::read_csv(path, dimension, rank, ranks);
+start::TextRows read(const std::string& path, int dimension, Rank rank, int ranks) {
+  return start::kind_of(path) == start::Kind::lammps ? start::read_lammps(path, dimension, rank, ranks)
+                                                     : start::read_csv(path, dimension, rank, ranks);
 }
 
 void check_refusal(const Error& error, const std::string& path) {
@@ -59,8 +59,8 @@ void check_refusal(const Error& error, const std::string& path) {
 }
 
 void try_file(const std::string& path, int dimension) {
-  if (source::kind_of(path) == source::Kind::pack) return;
-  source::TextRows whole;
+  if (start::kind_of(path) == start::Kind::pack) return;
+  start::TextRows whole;
   try {
     whole = read(path, dimension, 0, 1);
   } catch (const Error& error) {
@@ -69,7 +69,7 @@ void try_file(const std::string& path, int dimension) {
   check_rows(whole);
   std::vector<Row> together;
   for (const Rank rank : {0, 1, 2}) {
-    const source::TextRows share = read(path, dimension, rank, 3);
+    const start::TextRows share = read(path, dimension, rank, 3);
     demand(share.total == whole.total && share.taken == whole.taken && share.left == whole.left,
            "ranks read other files");
     const std::vector<Row> rows = rows_of(share);

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "asked/restitution.hpp"
-#include "asked/vessel.hpp"
 #include "cli/starter.hpp"
+#include "config/restitution.hpp"
+#include "config/vessel.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"

@@ -8,7 +8,7 @@
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "mesh/shapes.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 #include "support/packs_on_ranks.hpp"
 
 namespace packmpi::run {
@@ -91,7 +91,7 @@ TEST_F(PackInMesh, GoesOnFromAPackInIt) {
   const auto next = [&](double width) {
     const Soup soup = testing::moved(hopper_with_beam(), [&](const Vec3& x) { return Vec3{width * x[0], x[1], x[2]}; });
     const std::string text = text_of(soup, 0.12) + "[start]\npack = \"" + folder_ + "/shape.hdf\"\n";
-    return scene::build(source::with_start(world_, input::parse(text, folder_ + "/next.toml", {})));
+    return scene::build(start::with_start(world_, input::parse(text, folder_ + "/next.toml", {})));
   };
   ASSERT_EQ(run(next(1.0), world_.size(), 0, ""), ExitCode::done) << words_;
   EXPECT_GT(static_cast<std::size_t>(record_.particles), before + 50);

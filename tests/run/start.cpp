@@ -19,7 +19,7 @@
 #include "report/json_seal.hpp"
 #include "run/analyze.hpp"
 #include "run/make_pack.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -53,7 +53,7 @@ class Start : public ::testing::Test {
     o.force = true;
     if (change) change(o);
     const std::string path = (folder_ / (name + ".toml")).string();
-    const scene::Scene scene = scene::build(source::with_start(comm_, input::parse(base + more, path, {set})));
+    const scene::Scene scene = scene::build(start::with_start(comm_, input::parse(base + more, path, {set})));
     report::RunRecord record = make_pack(comm_, scene, o);
     comm_.barrier();
     return record;

@@ -10,7 +10,7 @@
 #include "input/read.hpp"
 #include "pack/pack.hpp"
 #include "run/make_pack.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -42,7 +42,7 @@ class StartText : public ::testing::Test {
     o.force = true;
     const std::string path = (folder_ / (name + ".toml")).string();
     const report::RunRecord record =
-        make_pack(comm, scene::build(source::with_start(comm, input::parse(base + more, path, {set}))), o);
+        make_pack(comm, scene::build(start::with_start(comm, input::parse(base + more, path, {set}))), o);
     comm.barrier();
     return record;
   }

@@ -5,11 +5,11 @@
 #include <cctype>
 #include <cmath>
 
-#include "source/text_file.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_file.hpp"
+#include "start/text_rows.hpp"
 #include "tables/units.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 enum Column { col_x, col_y, col_z, col_radius, col_vx, col_vy, col_vz, col_wx, col_wy, col_wz, column_count };
@@ -189,4 +189,4 @@ TextRows read_csv(const std::string& path, int dimension, Rank rank, int ranks) 
   return found;
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -1,4 +1,4 @@
-#include "source/taken.hpp"
+#include "start/taken.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 // Reasons to stop of layers that were taken over.
@@ -83,4 +83,4 @@ bool lacks_springs(const scene::Scene& scene, const pack::Progress& progress) {
   });
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -1,4 +1,4 @@
-#include "asked/restitution.hpp"
+#include "config/restitution.hpp"
 
 #include <cmath>
 #include <numbers>

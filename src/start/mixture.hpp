@@ -8,7 +8,7 @@
 #include "pack/pack.hpp"
 #include "scene/scene.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 
 /// Throws Error(bad_input) if the scene has several components, of which a text file says nothing. Local.
 void check_one_material(const scene::Scene& scene);
@@ -22,4 +22,4 @@ void check_components(const scene::Scene& scene, const input::Input& made);
 [[nodiscard]] control::Mixing mixing_of(const comm::Comm& comm, const scene::Scene& scene, const pack::PackRows& rows,
                                         const std::vector<GlobalId>& first_ids);
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -7,9 +7,9 @@
 #include "pack/pack.hpp"
 #include "pack/progress.hpp"
 #include "scene/scene.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_rows.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 
 /// The first id of each layer of a pack; one layer, if ids do not ascend with layers. Collective.
 [[nodiscard]] std::vector<GlobalId> first_ids_of(const comm::Comm& comm, const pack::PackRows& rows);
@@ -27,4 +27,4 @@ namespace packmpi::source {
 /// Do contacts that were taken over lack what they should remember? Then rest cannot be judged before they bear again.
 [[nodiscard]] bool lacks_springs(const scene::Scene& scene, const pack::Progress& progress);
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

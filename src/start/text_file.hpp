@@ -8,7 +8,7 @@
 
 #include "base/regular_file.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 
 /// Lines of a file that may be larger than memory. Rank-local. Throws Error(bad_input) if there is no such file.
 class TextFile {
@@ -39,4 +39,4 @@ class TextFile {
 /// The number that a cell is, and nothing else: finite. False: it is none. With `comma` a decimal comma is one.
 [[nodiscard]] bool is_number(std::string_view cell, bool comma, double& value);
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "asked/input.hpp"
 #include "comm/comm.hpp"
+#include "config/input.hpp"
 #include "document/document.hpp"
 #include "tables/sieve_table.hpp"
 

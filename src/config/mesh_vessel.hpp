@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "asked/input.hpp"
+#include "config/input.hpp"
 #include "document/document.hpp"
 #include "tables/sieve_table.hpp"
 

@@ -1,8 +1,8 @@
-#include "asked/radius_range.hpp"
+#include "config/radius_range.hpp"
 
 #include <algorithm>
 
-#include "asked/grading.hpp"
+#include "config/grading.hpp"
 
 namespace packmpi::input {
 

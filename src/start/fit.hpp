@@ -6,9 +6,9 @@
 #include "input/input.hpp"
 #include "pack/pack.hpp"
 #include "scene/scene.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_rows.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 
 /// Throws Error(bad_input): the scene's file, and the words.
 [[noreturn]] void refuse(const scene::Scene& scene, const std::string& words);
@@ -33,4 +33,4 @@ void fit_rows(const scene::Scene& scene, TextRows& found);
 /// Do particles feel other forces in the scene than in `made`, where they came to rest? Local.
 [[nodiscard]] bool feels_anew(const input::Input& made, const scene::Scene& scene);
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

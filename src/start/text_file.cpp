@@ -1,4 +1,4 @@
-#include "source/text_file.hpp"
+#include "start/text_file.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_rows.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 constexpr std::int64_t block_bytes = 1 << 20;
@@ -124,4 +124,4 @@ std::uint64_t digest_of_text(const std::string& path) {
   return digest;
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -1,6 +1,6 @@
 /// The container that a scene asks for.
 #pragma once
-#include "asked/input.hpp"
+#include "config/input.hpp"
 #include "geometry/container.hpp"
 
 namespace packmpi::input {

@@ -1,6 +1,6 @@
 /// Between what radii a size distribution lies.
 #pragma once
-#include "asked/input.hpp"
+#include "config/input.hpp"
 
 namespace packmpi::input {
 

@@ -1,4 +1,4 @@
-#include "source/mixture.hpp"
+#include "start/mixture.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "geometry/volume.hpp"
 #include "scene/mixture.hpp"
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 std::string names_of(const input::Input& in) {
@@ -67,4 +67,4 @@ control::Mixing mixing_of(const comm::Comm& comm, const scene::Scene& scene, con
   return mixing;
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

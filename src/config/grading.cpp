@@ -1,4 +1,4 @@
-#include "asked/grading.hpp"
+#include "config/grading.hpp"
 
 #include <fmt/format.h>
 

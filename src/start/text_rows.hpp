@@ -9,7 +9,7 @@
 #include "base/types.hpp"
 #include "pack/pack.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 
 enum class Kind { pack, csv, lammps };
 
@@ -41,4 +41,4 @@ struct TextRows {
 /// Likewise.
 [[nodiscard]] TextRows read_lammps(const std::string& path, int dimension, Rank rank, int ranks);
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

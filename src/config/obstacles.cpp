@@ -1,12 +1,12 @@
-#include "asked/obstacles.hpp"
+#include "config/obstacles.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "asked/mesh_vessel.hpp"
 #include "base/error.hpp"
+#include "config/mesh_vessel.hpp"
 #include "mesh/bodies.hpp"
 #include "mesh/vectors.hpp"
 

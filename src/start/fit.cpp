@@ -1,4 +1,4 @@
-#include "source/fit.hpp"
+#include "start/fit.hpp"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "input/read.hpp"
 #include "pack/scene_change.hpp"
 #include "report/json_seal.hpp"
-#include "source/mixture.hpp"
+#include "start/mixture.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 std::uint64_t digest_of(const std::string& path) {
@@ -102,4 +102,4 @@ bool feels_anew(const input::Input& made, const scene::Scene& scene) {
   });
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

@@ -1,4 +1,4 @@
-#include "asked/vessel.hpp"
+#include "config/vessel.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "asked/time_step.hpp"
+#include "config/time_step.hpp"
 
 #include <algorithm>
 #include <cmath>

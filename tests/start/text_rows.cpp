@@ -1,6 +1,6 @@
 // CSV and LAMMPS data files: what is read, and what is refused with file and line: the first line of each file of bad/
 // says how.
-#include "source/text_rows.hpp"
+#include "start/text_rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,7 +117,7 @@ TEST_F(TextRowsOf, LinesMayBeLongerThanABlockOfTheFile) {
 
 TEST(BadTextRows, AreRefusedWithFileAndLine) {
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(PACKMPI_SOURCE_DIR) / "tests/source/bad")) {
+  for (const auto& entry : fs::directory_iterator(fs::path(PACKMPI_SOURCE_DIR) / "tests/start/bad")) {
     const std::string path = entry.path().string();
     std::ifstream file(path, std::ios::binary);
     std::string first;
@@ -142,4 +142,4 @@ TEST(BadTextRows, AreRefusedWithFileAndLine) {
 TEST(BadTextRows, SayThatThereIsNoFile) { EXPECT_THROW((void)kind_of("/nowhere/rows.csv"), Error); }
 
 }  // namespace
-}  // namespace packmpi::source
+}  // namespace packmpi::start

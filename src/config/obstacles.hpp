@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "asked/input.hpp"
+#include "config/input.hpp"
 #include "document/document.hpp"
 #include "mesh/read.hpp"
 #include "tables/sieve_table.hpp"

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "asked/input.hpp"
+#include "config/input.hpp"
 
 namespace packmpi::input {
 

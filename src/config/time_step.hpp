@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
-#include "asked/input.hpp"
-#include "asked/radius_range.hpp"
+#include "config/input.hpp"
+#include "config/radius_range.hpp"
 
 namespace packmpi::input {
 

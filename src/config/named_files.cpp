@@ -1,14 +1,14 @@
-#include "asked/named_files.hpp"
+#include "config/named_files.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "asked/mesh_vessel.hpp"
 #include "base/error.hpp"
 #include "base/regular_file.hpp"
 #include "base/text.hpp"
+#include "config/mesh_vessel.hpp"
 
 namespace packmpi::input {
 

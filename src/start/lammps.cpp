@@ -5,10 +5,10 @@
 #include <cctype>
 #include <unordered_map>
 
-#include "source/text_file.hpp"
-#include "source/text_rows.hpp"
+#include "start/text_file.hpp"
+#include "start/text_rows.hpp"
 
-namespace packmpi::source {
+namespace packmpi::start {
 namespace {
 
 using Words = std::vector<std::string_view>;
@@ -138,4 +138,4 @@ TextRows read_lammps(const std::string& path, int dimension, Rank rank, int rank
   return Reader(path, dimension, rank, ranks).read();
 }
 
-}  // namespace packmpi::source
+}  // namespace packmpi::start

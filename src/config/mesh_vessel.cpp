@@ -1,12 +1,12 @@
-#include "asked/mesh_vessel.hpp"
+#include "config/mesh_vessel.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "asked/obstacles.hpp"
 #include "base/error.hpp"
+#include "config/obstacles.hpp"
 #include "mesh/bodies.hpp"
 #include "mesh/file.hpp"
 #include "tables/units.hpp"
