@@ -126,11 +126,17 @@ bool is_of_mixture(const document::Table& root, const document::Document& effect
   return true;
 }
 
+/// With obstacles the container is a mesh that has them as holes.
+bool is_of_obstacles(const document::Table& root, const document::Entry& entry) {
+  return entry_of(root, "obstacle") != nullptr && (entry.name == "obstacle" || entry.name == "container");
+}
+
 /// Every value of the document is a key's, and the effective input has it.
 void check_nothing_is_passed_over(const document::Table& table, const std::string& path,
                                   const document::Document& effective) {
   for (const document::Entry& entry : table) {
     if (path.empty() && is_of_mixture(table, effective, entry)) continue;
+    if (path.empty() && is_of_obstacles(table, entry)) continue;
     const std::string here = (path.empty() ? "" : path + ".") + entry.name;
     if (here == "particles.diameter") continue;  // stands under radius, halved
     if (input::find_key(here) == nullptr) {
@@ -154,7 +160,7 @@ void check_accepted(const Case& scene, const input::Input& in) {
 
   Case more = scene;
   more.scene += "\nno_such_key = 1\n";
-  demand(!accepted([&] { (void)input::parse(more.scene, scene_name, more.overrides, more.curve); }),
+  demand(!accepted([&] { (void)input::parse(more.scene, scene_name, more.overrides, more.files); }),
          "an unknown key at the end is accepted");
 }
 
