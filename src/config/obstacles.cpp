@@ -113,6 +113,17 @@ void refuse_what_is_inside(const Input& in, const std::vector<Triangles>& obstac
   }
 }
 
+/// No more than a pack may hold the text of: told before the work on them.
+void refuse_many(const Input& in, std::size_t triangles, const std::vector<Triangles>& obstacles) {
+  constexpr std::size_t most = 60'000;
+  for (const Triangles& body : obstacles) triangles += body.size();
+  if (triangles <= most) return;
+  document::fail(in.obstacles.front().place, "obstacle",
+                 fmt::format("with the obstacles the vessel has {} triangles, and {} are the limit; leave some out, or "
+                             "simplify them",
+                             triangles, most));
+}
+
 /// Of an obstacle that is closed, lies in the vessel and is not so small that its corners would be one there.
 double volume_of(const Obstacle& one, std::size_t number, const Triangles& body, const mesh::Surface& vessel) {
   const auto refuse = [&](const std::string& words) {
@@ -185,6 +196,7 @@ std::vector<Triangles> drawn_obstacles(const Input& in, const std::vector<tables
 std::shared_ptr<const mesh::Surface> room_around(const Input& in, const mesh::Surface& vessel,
                                                  const std::vector<Triangles>& obstacles) {
   const Triangles before = triangles_of(vessel.shell());
+  refuse_many(in, before.size(), obstacles);
   Triangles all = before;
   double volume = vessel.volume();
   for (std::size_t k = 0; k < obstacles.size(); ++k) {

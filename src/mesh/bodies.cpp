@@ -21,6 +21,17 @@ std::array<double, 2> direction(int k, int n) {
 
 double six_volumes(const Corners& c) { return dot(c[0], cross(c[1], c[2])); }
 
+// A flat cap, its corners anticlockwise for who looks at it: strips across, as a fan's triangles would all be near each
+// other in the middle.
+void add_cap(std::vector<Corners>& triangles, const std::vector<Vec3>& ring) {
+  for (std::size_t low = 0, high = ring.size() - 1; high - low >= 2;) {
+    triangles.push_back({ring[low], ring[low + 1], ring[high]});
+    if (++low + 2 > high) break;
+    triangles.push_back({ring[low], ring[high - 1], ring[high]});
+    --high;
+  }
+}
+
 }  // namespace
 
 std::vector<Corners> prism_over(const std::vector<std::array<double, 2>>& polygon, double height) {
@@ -48,10 +59,19 @@ std::vector<Corners> body_of_revolution(const Profile& profile, int facets) {
     const double rho = wider * profile[p][0];
     return Vec3{rho * c, rho * s, profile[p][1]};
   };
-  const bool ring = profile.front()[0] > 0.0;
+  const bool closed = profile.front()[0] > 0.0;
   std::vector<Corners> triangles;
-  for (std::size_t p = 0; p + (ring ? 0 : 1) < profile.size(); ++p) {
+  for (std::size_t p = 0; p + (closed ? 0 : 1) < profile.size(); ++p) {
     const std::size_t next = (p + 1) % profile.size();
+    if (profile[p][1] == profile[next][1] && (profile[p][0] == 0.0 || profile[next][0] == 0.0)) {
+      const bool from_axis = profile[p][0] == 0.0;  // a floor, which is seen from below
+      std::vector<Vec3> ring(static_cast<std::size_t>(facets));
+      for (int k = 0; k < facets; ++k) {
+        ring[static_cast<std::size_t>(k)] = from_axis ? at(next, facets - k) : at(p, k);
+      }
+      add_cap(triangles, ring);
+      continue;
+    }
     for (int k = 0; k < facets; ++k) {
       if (profile[p][0] > 0.0) triangles.push_back({at(p, k), at(p, k + 1), at(next, k + 1)});
       if (profile[next][0] > 0.0) triangles.push_back({at(p, k), at(next, k + 1), at(next, k)});
