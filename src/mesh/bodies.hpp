@@ -6,8 +6,13 @@
 
 namespace packmpi::mesh {
 
-/// Facets around a body of revolution, and rings of a sphere from pole to pole.
+/// Facets around a body of revolution, and rings of a sphere from pole to pole. Few for a fuzzer, whose trials are
+/// many.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+inline constexpr int around = 12, around_sphere = 8, rings = 4;
+#else
 inline constexpr int around = 180, around_sphere = 72, rings = 36;
+#endif
 
 /// A corner of the half of a section through the axis: distance from the axis and height [m].
 using Profile = std::vector<std::array<double, 2>>;

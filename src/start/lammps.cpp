@@ -50,7 +50,7 @@ class Reader {
         take_velocity(words);
       }
     }
-    if (found_.total == 0 || found_.total != atoms_)
+    if (found_.total == 0 || static_cast<double>(found_.total) != atoms_)
       file_.refuse(fmt::format("has {} atoms of the {} in its head", found_.total, atoms_));
     found_.taken = velocities_ ? "positions, radii, velocities, spins" : "positions, radii";
     found_.left = "atom ids, types, densities";
@@ -62,7 +62,7 @@ class Reader {
 
   void take_head(const Words& words) {
     constexpr std::array<std::string_view, 3> lows{"xlo", "ylo", "zlo"};
-    if (words.size() >= 2 && words[1] == "atoms") atoms_ = static_cast<std::int64_t>(number_of(file_, words, 0));
+    if (words.size() >= 2 && words[1] == "atoms") atoms_ = number_of(file_, words, 0);
     if (words.size() < 4) return;
     const auto axis = std::ranges::find(lows, words[2]);
     if (axis != lows.end())
@@ -127,7 +127,7 @@ class Reader {
   int ranks_;
   TextRows found_;
   Section section_ = Section::other;
-  std::int64_t atoms_ = 0;
+  double atoms_ = 0.0;  // whatever the head says
   bool velocities_ = false;
   std::unordered_map<std::int64_t, std::size_t> slot_;  // of this rank's atoms, by LAMMPS' ids
 };

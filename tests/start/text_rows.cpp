@@ -136,7 +136,7 @@ TEST(BadTextRows, AreRefusedWithFileAndLine) {
     }
     ++files;
   }
-  EXPECT_EQ(files, 18);
+  EXPECT_EQ(files, 19);
 }
 
 TEST(BadTextRows, SayThatThereIsNoFile) { EXPECT_THROW((void)kind_of("/nowhere/rows.csv"), Error); }
