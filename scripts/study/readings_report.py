@@ -209,7 +209,7 @@ is. `scripts/study/readings.py` tries them. {len(readings)} readings: **{len(mee
 **Nearest of all** by the mean square of the eight means: begins at {best.way.words}, {STOPS[best.stop][1]}, V to {VOLUMES[best.volume]}; {best.met} of 8 columns
 within 2 sd, rms {best.score:.1f}, and at worst {tables.mean(best.values(missed)):.3f} where the paper has {tables.mean(best.paper[missed]):.3f} ({missed[0]}, rotation {missed[1]}: {abs(best.off(missed)):.1f} sd); it inserts {best.count(("5.1", "5.2"))}
 discs (the paper: typically 1300) and {best.count(("5.3", "5.4"))} spheres (typically 7500 to 8000). Seeds of one
-reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), so that few seeds tell. Below are the readings of which most columns were run, and of them the nearest:
+reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), and by {scatters[-1]:.3f} at most, where one layer more or less hangs on the highest sphere. Below are the readings of which most columns were run, and of them the nearest:
 the number of packs in brackets, **bold** what is off by more than 2 sd; rms and worst are the distances of the means in the paper's standard deviations. "Discs" and
 "spheres" are particles inserted, from the least to the most. The row of all eight columns is packmpi as it is; "i" is an independent serial program
 ([data/readings_independent.csv](data/readings_independent.csv)); ">" is from a run that was cut short: with V up to the surface phi rises layer by layer, and it had that
