@@ -124,9 +124,9 @@ def inside(root, options):
     return rows
 
 
-def table(rows):
+def table(rows, stamp):
     """For the document."""
-    lines = [f"`scripts/dev/new_user.py`, {os.cpu_count()} cores. {measuring.made_by('scripts/dev/new_user.py')}.", "", "| what | time |", "|---|---|"]
+    lines = [f"{stamp}, {os.cpu_count()} cores.", "", "| what | time |", "|---|---|"]
     lines += [f"| {what} | {seconds:.0f} s |" for what, seconds, _ in rows]
     return "\n".join([*lines, f"| **all of it** | **{sum(row[1] for row in rows) / 60.0:.0f} min** |"])
 
@@ -142,10 +142,11 @@ def main():
     if os.geteuid() != 0:
         sys.exit("new_user: chroot needs root")
     if options.inside:
+        stamp = measuring.made_by("scripts/dev/new_user.py")   # of the commit that is cloned
         rows = inside(options.inside, options)
         failed = any(code for _, _, code in rows)
         if options.document and not failed:
-            measuring.write_block(options.document, "new_user", table(rows))
+            measuring.write_block(options.document, "new_user", table(rows, stamp))
         return 1 if failed else 0
     place = options.keep.resolve() if options.keep else Path(tempfile.mkdtemp(prefix="packmpi-new-user-"))
     root = str(place / "debian")   # which everybody may enter

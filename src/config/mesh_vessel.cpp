@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
 #include "config/obstacles.hpp"
 #include "mesh/bodies.hpp"
 #include "mesh/file.hpp"
+#include "mesh/vectors.hpp"
 #include "tables/units.hpp"
 
 namespace packmpi::input {
@@ -19,17 +21,11 @@ constexpr std::string_view mesh_file = "container.file", mesh_unit = "container.
 
 /// Moves the lower corner of the box around them to the origin, by what is returned.
 Vec3 move_to_origin(std::vector<mesh::Corners>& triangles, double unit) {
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  for (mesh::Corners& corners : triangles) {
-    for (Vec3& x : corners) {
-      for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], x[a] *= unit);
-    }
-  }
-  for (mesh::Corners& corners : triangles) {
-    for (Vec3& x : corners) {
-      for (std::size_t a = 0; a < 3; ++a) x[a] = x[a] - low[a] + 0.0;  // no -0
-    }
-  }
+  triangles = mesh::moved(std::move(triangles), [&](const Vec3& x) { return mesh::times(unit, x); });
+  const Vec3 low = mesh::box_around(triangles)[0];
+  triangles = mesh::moved(std::move(triangles), [&](const Vec3& x) {
+    return Vec3{x[0] - low[0] + 0.0, x[1] - low[1] + 0.0, x[2] - low[2] + 0.0};  // no -0
+  });
   return {-low[0], -low[1], -low[2]};
 }
 
@@ -118,11 +114,14 @@ void take_mesh(const document::Document& document, const std::vector<tables::Cur
   if (c.shape == VesselShape::prism) take_prism(document, c);
   const bool drawn = c.shape != VesselShape::mesh;
   if (drawn && in.obstacles.empty()) return;
-  const std::string_view key = c.file.empty() ? mesh_text : mesh_file;
+  const bool boxed = c.shape == VesselShape::box;
+  const std::string_view key = drawn            ? (boxed ? "container.size" : "container.height")
+                               : c.file.empty() ? mesh_text
+                                                : mesh_file;
   std::vector<mesh::Corners> triangles = drawn ? drawn_vessel(document, in) : read_vessel(document, files, in);
   const Vec3 shift = drawn ? move_to_origin(triangles, 1.0) : Vec3{};
   const std::string name = c.file.empty() ? "mesh" : beside(in.file, c.file);
-  if (c.shape == VesselShape::box) c.height = c.size.back();
+  if (boxed) c.height = c.size.back();
   c.shape = VesselShape::mesh;
   try {
     c.mesh = std::make_shared<const mesh::Surface>(triangles, name);

@@ -15,13 +15,7 @@ namespace {
 
 using Triangles = std::vector<mesh::Corners>;
 
-template <class Move>
-Triangles moved(Triangles triangles, const Move& move) {
-  for (mesh::Corners& corners : triangles) {
-    for (Vec3& x : corners) x = move(x);
-  }
-  return triangles;
-}
+using mesh::moved;
 
 Triangles box_of(const Vec3& size) {
   return mesh::prism_over({{0.0, 0.0}, {size[0], 0.0}, {size[0], size[1]}, {0.0, size[1]}}, size[2]);
@@ -29,21 +23,6 @@ Triangles box_of(const Vec3& size) {
 
 Triangles cylinder_of(double radius, double length) {
   return mesh::body_of_revolution({{0.0, 0.0}, {radius, 0.0}, {radius, length}, {0.0, length}});
-}
-
-std::array<Vec3, 2> around(const Triangles& triangles) {
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (const mesh::Corners& corners : triangles) {
-    for (const Vec3& x : corners) {
-      for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
-    }
-  }
-  return {low, high};
-}
-
-Vec3 extents(const Triangles& triangles) {
-  const auto [low, high] = around(triangles);
-  return mesh::minus(high, low);
 }
 
 /// x, y, z of a body about the z axis become those of one about another.
@@ -129,7 +108,8 @@ double volume_of(const Obstacle& one, std::size_t number, const Triangles& body,
   const auto refuse = [&](const std::string& words) {
     document::fail(one.place, "obstacle", fmt::format("obstacle {} {}", number, words));
   };
-  const Vec3 widths = extents(body), room = mesh::minus(vessel.high(), vessel.low());
+  const auto [low, high] = mesh::box_around(body);
+  const Vec3 widths = mesh::minus(high, low), room = mesh::minus(vessel.high(), vessel.low());
   const bool round = one.shape == Body::sphere || one.shape == Body::cylinder;
   const double width = *std::ranges::min_element(widths),
                least = *std::ranges::max_element(room) * (round ? 1e-3 : 1e-5);
@@ -155,6 +135,11 @@ Triangles drawn_vessel(const document::Document& document, const Input& in) {
   if (std::ranges::find(c.boundary, Boundary::periodic) != c.boundary.end()) {
     document::fail(document.place("container.boundary"), "container.boundary",
                    "a container with an [[obstacle]] has walls on all sides; give \"wall\"");
+  }
+  if (c.shape == VesselShape::annulus && !(c.inner_diameter < c.diameter)) {
+    document::fail(document.place("container.inner_diameter"), "container.inner_diameter",
+                   fmt::format("{:g} m leaves no room in container.diameter = {:g} m; make it smaller",
+                               c.inner_diameter, c.diameter));
   }
   const double radius = 0.5 * c.diameter, core = 0.5 * c.inner_diameter;
   const auto upright = [](Triangles triangles, double r) {
@@ -185,7 +170,7 @@ std::vector<Triangles> drawn_obstacles(const Input& in, const std::vector<tables
   std::vector<Triangles> bodies;
   for (const Obstacle& one : in.obstacles) {
     Triangles body = body_of(one, in.file, files);
-    const auto [low, high] = around(body);
+    const auto [low, high] = mesh::box_around(body);
     Vec3 by = shift;
     if (one.position) by = mesh::plus(by, mesh::minus(*one.position, mesh::times(0.5, mesh::plus(low, high))));
     bodies.push_back(moved(std::move(body), [&](const Vec3& x) { return mesh::plus(x, by); }));

@@ -1,8 +1,10 @@
 #include "mesh/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "base/elementary.hpp"
 #include "mesh/vectors.hpp"
@@ -33,6 +35,16 @@ void add_cap(std::vector<Corners>& triangles, const std::vector<Vec3>& ring) {
 }
 
 }  // namespace
+
+std::array<Vec3, 2> box_around(const std::vector<Corners>& triangles) {
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (const Corners& corners : triangles) {
+    for (const Vec3& x : corners) {
+      for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
+    }
+  }
+  return {low, high};
+}
 
 std::vector<Corners> prism_over(const std::vector<std::array<double, 2>>& polygon, double height) {
   const auto at = [&](std::size_t k, double z) {
@@ -90,10 +102,7 @@ std::vector<Corners> sphere_of_facets(double radius) {
   double volume = 0.0;
   for (const Corners& c : triangles) volume += six_volumes(c) / 6.0;
   const double scale = radius * elementary::cube_root(4.0 / 3.0 * std::numbers::pi / volume);
-  for (Corners& corners : triangles) {
-    for (Vec3& x : corners) x = times(scale, x);
-  }
-  return triangles;
+  return moved(std::move(triangles), [&](const Vec3& x) { return times(scale, x); });
 }
 
 }  // namespace packmpi::mesh

@@ -1,4 +1,4 @@
-/// Closed surfaces of simple bodies, of triangles that look outside [m].
+/// Triangles moved and measured, and closed surfaces of simple bodies, whose triangles look outside [m].
 #pragma once
 #include <vector>
 
@@ -13,6 +13,18 @@ inline constexpr int around = 12, around_sphere = 8, rings = 4;
 #else
 inline constexpr int around = 180, around_sphere = 72, rings = 36;
 #endif
+
+/// The lower and the upper corner of the box around triangles [their unit]. Pure.
+[[nodiscard]] std::array<Vec3, 2> box_around(const std::vector<Corners>& triangles);
+
+/// Every corner x at move(x).
+template <class Move>
+[[nodiscard]] std::vector<Corners> moved(std::vector<Corners> triangles, const Move& move) {
+  for (Corners& corners : triangles) {
+    for (Vec3& x : corners) x = move(x);
+  }
+  return triangles;
+}
 
 /// A corner of the half of a section through the axis: distance from the axis and height [m].
 using Profile = std::vector<std::array<double, 2>>;

@@ -7,6 +7,8 @@
 #include "base/error.hpp"
 #include "base/regular_file.hpp"
 #include "base/text.hpp"
+#include "mesh/bodies.hpp"
+#include "mesh/vectors.hpp"
 
 namespace packmpi::mesh {
 
@@ -29,13 +31,8 @@ std::string read_file(const comm::Comm& comm, const std::string& path) {
 }
 
 std::shared_ptr<const Surface> make_surface(const std::string& bytes, const std::string& path, double unit) {
-  std::vector<Corners> triangles = read_triangles(bytes, path);
-  for (Corners& corners : triangles) {
-    for (Vec3& corner : corners) {
-      for (double& x : corner) x *= unit;
-    }
-  }
-  return std::make_shared<const Surface>(triangles, path);
+  const auto scaled = [&](const Vec3& x) { return times(unit, x); };
+  return std::make_shared<const Surface>(moved(read_triangles(bytes, path), scaled), path);
 }
 
 std::string mended_words(const Mended& mended) {

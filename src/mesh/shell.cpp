@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <tuple>
 #include <unordered_map>
@@ -12,6 +11,7 @@
 #include "base/digest.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "mesh/bodies.hpp"
 #include "mesh/vectors.hpp"
 
 namespace packmpi::mesh {
@@ -63,15 +63,8 @@ class Weld {
 };
 
 void join_corners(Shell& shell, const std::vector<Corners>& triangles, const std::string& name) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  shell.low.fill(infinity), shell.high.fill(-infinity);
-  for (const Corners& corners : triangles) {
-    for (const Vec3& x : corners) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        shell.low[a] = std::min(shell.low[a], x[a]), shell.high[a] = std::max(shell.high[a], x[a]);
-      }
-    }
-  }
+  const auto [low, high] = box_around(triangles);
+  shell.low = low, shell.high = high;
   const Vec3 size = minus(shell.high, shell.low);
   const double largest = *std::ranges::max_element(size), smallest = *std::ranges::min_element(size);
   if (!(smallest > 1e-5 * largest) || !(largest < 1e100) || !(largest > 1e-100)) {

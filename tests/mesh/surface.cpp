@@ -358,5 +358,24 @@ TEST(Bodies, AreAsLargeAsTheRoundOnes) {
   expect(sphere_of_facets(0.7), 4.0 / 3.0 * pi * 0.343, {-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7});
 }
 
+/// Corners and middles of the facets of a cylinder and a sphere lie within the shares of a radius that doc/vessels.md
+/// has.
+TEST(Bodies, AreNearTheRoundOnes) {
+  const auto farthest = [](const Soup& soup, const auto& from_wall) {
+    double most = 0.0;
+    for (const Corners& c : soup) {
+      for (const Vec3& x :
+           {c[0], c[1], c[2], times(0.5, plus(c[0], c[1])), times(0.5, plus(c[1], c[2])), times(0.5, plus(c[2], c[0]))})
+        most = std::max(most, std::abs(from_wall(x)));
+    }
+    return most;
+  };
+  EXPECT_LT(farthest(sphere_of_facets(1.0), [](const Vec3& x) { return norm(x) - 1.0; }), 2e-3);
+  // The side alone: of a cap's strips the middles lie inside.
+  Soup side = body_of_revolution({{0, 0}, {1, 0}, {1, 2}, {0, 2}});
+  std::erase_if(side, [](const Corners& c) { return c[0][2] == c[1][2] && c[1][2] == c[2][2]; });
+  EXPECT_LT(farthest(side, [](const Vec3& x) { return std::hypot(x[0], x[1]) - 1.0; }), 2e-4);
+}
+
 }  // namespace
 }  // namespace packmpi::mesh
