@@ -30,7 +30,7 @@ SCENES = {
                               "dynamics.time_step": "1e-5"}),
     "graded": ("paper_5_4", {"container.size": "[0.4,0.4,0.4]", "container.boundary": '["periodic","periodic"]', "fidelity": "balanced"}),
 }
-SCENES["confined"] = ("confined", {"container.size": "[0.08,0.08,0.08]"})
+SCENES["confined"] = ("confined", {"container.size": "[0.08,0.08,0.08]", "confinement.wait": "20"})   # until its one loose sphere lies still
 SCENES["cylinder"] = ("pebbles", {"container.height": "0.6"})
 SCENES["mesh"] = ("hopper", {"particles.diameter": '{distribution="equal",value="40 mm"}'})
 CANNOT = {("mesh", "lammps")}           # its granular walls know no triangles

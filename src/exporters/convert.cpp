@@ -124,7 +124,7 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
   };
   const std::array<Carried, 3> able{Carried{"lammps", {Shape::frustum, Shape::sphere, Shape::annulus}},
                                     Carried{"liggghts", {Shape::annulus, Shape::mesh}},
-                                    Carried{"yade", {Shape::frustum, Shape::annulus, Shape::mesh}}};
+                                    Carried{"yade", {Shape::frustum, Shape::sphere, Shape::annulus, Shape::mesh}}};
   constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
   const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;
   if (usual || std::ranges::find(without, request.format) != without.end()) return;

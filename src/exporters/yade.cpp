@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <iterator>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
 #include "exporters/mixture.hpp"
 #include "exporters/quote.hpp"
+#include "exporters/yade_walls.hpp"
 
 namespace packmpi::exporters::yade {
 namespace {
@@ -28,43 +31,10 @@ std::string cell(const Specimen& s) {
   return fmt::format("##PERIODIC:: {:.17g} {:.17g} {:.17g}\n", size[0], size[1], size[2]);
 }
 
-/// Facets that touch the wall from where no particle is, so many that their edges are half a thousandth of a radius
-/// beyond it; they begin below the floor, so that no particle meets their ends.
-std::string mantle(const Specimen& s) {
-  constexpr double gap = 5e-4;
-  const double facets = std::max(48.0, std::ceil(std::numbers::pi * std::sqrt(s.radius() / (2.0 * gap * s.widest))));
-  const double high = inner_box(s)[2].high + 4.0 * s.widest;
-  const auto cylinder = [&](double radius, const char* edges) {
-    return fmt::format(
-        "walls += geom.facetCylinder(({0}, {0}, {1}), {4}{5}, {3}, segmentsNumber={2:.0f}, "
-        "wallMask=4, material='walls')\n",
-        s.radius(), 0.5 * (high - s.widest), facets, high + s.widest, radius, edges);
-  };
-  const std::string outside = fmt::format(" / math.cos(math.pi / {:.0f})", facets);
-  std::string text;
-  if (s.scene.container.shape == geometry::Shape::frustum) {
-    const auto [height, radius] = cone_ends(s);
-    text = fmt::format(
-        "walls += geom.facetCone(({0}, {0}, {1}), {2}{5}, {3}{5}, {4}, segmentsNumber={6:.0f}, wallMask=4, "
-        "material='walls')\n",
-        s.radius(), 0.5 * (height.low + height.high), radius.high, radius.low, height.high - height.low, outside,
-        facets);
-  } else {
-    text = cylinder(s.radius(), outside.c_str());
-  }
-  if (s.has(geometry::Surface::inner)) text += cylinder(s.scene.container.core, "");
-  if (s.has(geometry::Surface::collar)) text += cylinder(s.scene.container.ends[1], outside.c_str());
-  return text;
-}
+bool has_round_walls(const Specimen& s) { return s.round() && !s.scene.container.is_mesh(); }
 
-/// The triangles of a mesh.
-std::string facets(const Specimen& s) {
-  const mesh::Shell& shell = s.scene.container.room->shell();
-  std::string text = "points = [\n";
-  for (const Vec3& x : shell.points) text += fmt::format("    ({}, {}, {}),\n", x[0], x[1], x[2]);
-  text += "]\ntriangles = [\n";
-  for (const auto& t : shell.triangles) text += fmt::format("    ({}, {}, {}),\n", t[0], t[1], t[2]);
-  return text + "]\nwalls = [utils.facet([points[k] for k in t], material='walls') for t in triangles]\n";
+bool is_round(int wall) {
+  return wall >= static_cast<int>(geometry::most_planes) && wall < static_cast<int>(geometry::most_surfaces);
 }
 
 /// A plane wall, by its number in the pack.
@@ -74,7 +44,7 @@ struct Plane {
   double at;
 };
 
-/// In the order in which the script has them; what is not plane comes after them.
+/// In the order in which the script has them.
 std::vector<Plane> planes(const Specimen& s) {
   std::vector<Plane> all;
   if (s.has(geometry::Surface::floor)) all.push_back({0, s.vertical(), 0.0});
@@ -87,29 +57,62 @@ std::vector<Plane> planes(const Specimen& s) {
   return all;
 }
 
+std::string facets_words(const Specimen& s) {
+  std::string text = "walls = [utils.facet(corners, material='walls') for corners in [\n";
+  for (const auto& [a, b, c] : facets(*s.scene.container.room)) {
+    text += "    (";
+    for (const Vec3& x : {a, b, c}) text += fmt::format("({}, {}, {}), ", x[0], x[1], x[2]);
+    text += "),\n";
+  }
+  return text + "]]\n";
+}
+
 std::string walls(const Specimen& s) {
-  if (s.scene.container.is_mesh()) return facets(s);
+  if (s.scene.container.is_mesh()) return facets_words(s);
   std::string text = "walls = []\n";
   for (const Plane& plane : planes(s)) {
     text += fmt::format("walls.append(utils.wall({}, axis={}, sense={}, material='walls'))\n", plane.at, plane.axis,
                         plane.at > 0.0 ? -1 : 1);
   }
-  return s.round() ? text + mantle(s) : text;
+  return text;
 }
 
-/// A line for each contact: two bodies of the script, and the force of friction on the first [N].
+/// Walls of the pack among the bodies of the script.
+class WallBodies {
+ public:
+  explicit WallBodies(const Specimen& s) : first_(s.count) {
+    if (!s.scene.container.is_mesh()) {
+      std::ranges::transform(planes(s), std::back_inserter(numbers_), &Plane::number);
+      return;
+    }
+    const mesh::Surface& room = *s.scene.container.room;
+    numbers_.resize(static_cast<std::size_t>(room.features().edge_begin()));
+    std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(geometry::most_surfaces));
+    if (facets(room).size() != numbers_.size()) numbers_.clear();  // several are one wall
+  }
+  /// Its body, or the negative number of a round wall; none if no body is just this wall.
+  [[nodiscard]] std::optional<std::int64_t> of(int wall) const {
+    if (is_round(wall)) return -wall;
+    const auto found = std::ranges::find(numbers_, wall);
+    if (found == numbers_.end()) return std::nullopt;
+    return first_ + (found - numbers_.begin());
+  }
+
+ private:
+  std::int64_t first_;
+  std::vector<int> numbers_;
+};
+
+/// A line for each contact: two bodies of the script, or one and the negative number of a round wall, and the force of
+/// friction on the first [N].
 std::string springs(const Specimen& s) {
   std::string text;
-  const std::vector<Plane> walls = planes(s);
+  const WallBodies walls(s);
   for (const pack::TouchingRow& row : s.touching) {
-    std::int64_t other = row.second;
-    if (row.wall >= 0) {
-      const auto plane = std::ranges::find(walls, row.wall, &Plane::number);
-      if (plane == walls.end()) continue;
-      other = s.count + (plane - walls.begin());
-    }
+    const std::optional<std::int64_t> other = row.wall >= 0 ? walls.of(row.wall) : row.second;
+    if (!other) continue;
     const double along = dot(row.force, row.normal);
-    text += fmt::format("{} {} {} {} {}\n", row.first, other, row.force[0] - along * row.normal[0],
+    text += fmt::format("{} {} {} {} {}\n", row.first, *other, row.force[0] - along * row.normal[0],
                         row.force[1] - along * row.normal[1], row.force[2] - along * row.normal[2]);
   }
   return text;
@@ -130,12 +133,16 @@ std::string stretch(const Specimen& s) {
       "for line in open(os.environ.get('PACK_SPRINGS', {})):\n"
       "    first, second, *force = line.split()\n"
       "    first, second = int(first), int(second)\n"
+      "{}"
       "    if not O.interactions.has(first, second) or not O.interactions[first, second].isReal:\n"
       "        continue\n"
       "    i = O.interactions[first, second]\n"
       "    i.phys.shearElastic = Vector3(*map(float, force)) * (-1 if i.id1 == first else 1)\n"
       "for i in ids:\n    O.bodies[i].state.vel = O.bodies[i].state.angVel = Vector3.Zero\n",
-      python_string(s.beside(".springs")));
+      python_string(s.beside(".springs")),
+      has_round_walls(s) ? "    if second < 0:\n        round_springs[first, -second] = Vector3(*map(float, force))\n"
+                           "        continue\n"
+                         : "");
 }
 
 /// Degrees of freedom that are fixed.
@@ -166,17 +173,32 @@ constexpr const char* report =
     "    print('PACK after %d steps: %d particles, volume %.17g m3, mass %.17g kg, largest contact force %.17g N'\n"
     "          % (O.iter, len(ids), volume, mass, force), flush=True)\n\n\n";
 
+std::string engines(const Specimen& s) {
+  const bool mesh = s.scene.container.is_mesh();
+  const double g = s.scene.in.jamming.gravity;
+  const double xi = s.scene.in.contact.damping_ratio;
+  return fmt::format(
+      "newton = NewtonIntegrator(gravity=({1}), damping=0)\n"
+      "O.engines = [\n    ForceResetter(),\n"
+      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(){3}], allowBiggerThanPeriod=True),\n"
+      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(hertzian=True){4}],\n"
+      "                    [Ip2_FrictMat_FrictMat_MindlinPhys({0})],\n"
+      "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
+      "{5}    newton,\n]\nO.dt = {2}\n\n\n",
+      s.scene.features.mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", xi),
+      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), step_of_stronger_dashpot(s),
+      mesh ? ", Bo1_Facet_Aabb()" : "", mesh ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "",
+      has_round_walls(s) ? "    PyRunner(command='push_off_round_walls()', iterPeriod=1, initRun=True),\n" : "");
+}
+
 std::string script(const Specimen& s) {
-  const input::Input& in = s.scene.in;
-  const double g = in.jamming.gravity;
   std::string text = notes(s, Fluid::not_carried, "# ");
   text += fmt::format(
-      "# not carried over: velocities and spins{0}{3}\n"
+      "# not carried over: velocities and spins{0}{2}\n"
       "# yade -n -x THIS: reads the pack, tells what is in it, and lets it settle for some steps.\n"
-      "import math\nimport os\nfrom yade import {2}pack, utils\n\n"
+      "import math\nimport os\nfrom yade import pack, utils\n\n"
       "data = os.environ.get('PACK_DATA', {1})\nsteps = int(os.environ.get('PACK_STEPS', '200'))\n\n",
       remembers(s) ? "" : "; the friction here has a history (Mindlin)", python_string(s.file),
-      s.round() ? "geom, " : "",
       remembers(s) && s.touching.empty() ? "; springs of friction, which come back while the pack settles" : "");
   const bool mixture = s.scene.features.mixture;
   text += mixture ? yade_materials(s) : materials(s);
@@ -188,16 +210,8 @@ std::string script(const Specimen& s) {
                         s.scene.features.periodic ? "True" : "False");
   text += fmt::format("for i in ids:\n    O.bodies[i].state.blockedDOFs = '{}'\n", blocked(s));
   text += walls(s) + "O.bodies.append(walls)\n\n";
-  text += fmt::format(
-      "O.engines = [\n    ForceResetter(),\n"
-      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(){3}], allowBiggerThanPeriod=True),\n"
-      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(hertzian=True){4}],\n"
-      "                    [Ip2_FrictMat_FrictMat_MindlinPhys({0})],\n"
-      "                    [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
-      "    NewtonIntegrator(gravity=({1}), damping=0),\n]\nO.dt = {2}\n\n\n",
-      mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", in.contact.damping_ratio),
-      s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), step_of_stronger_dashpot(s),
-      s.round() ? ", Bo1_Facet_Aabb()" : "", s.round() ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "");
+  if (has_round_walls(s)) text += round_walls(s);
+  text += engines(s);
   return text + report + first_step(s) + "report()\n" + stretch(s) + "O.run(steps, True)\nreport()\n";
 }
 

@@ -36,7 +36,7 @@ void warn_of_softness(const scene::Scene& scene, Warnings& warnings) {
 }
 
 void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {
-  constexpr double many = 1e6, most = 0.5;
+  constexpr double many = 1e6, most = 0.5, step = 0.05, largest_part = 0.9;
   const auto fines = scene::fines(scene);
   if (!fines || fines->particles < many || fines->share < most) return;
   if (scene.features.mixture) {
@@ -46,11 +46,16 @@ void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {
                     fines_words(*fines)));
     return;
   }
-  const auto& [from, to] = scene.in.particles.radius.keep_percent;
-  warnings.push_back(
-      fmt::format("particles.radius: {}; keep_percent = [{:g}, {:g}] leaves them out, and about {:.2g} particles "
-                  "in their place",
-                  fines_words(*fines), from + 0.05 * (to - from), to, fines->without));
+  const auto keep = [&](double part) {
+    const auto& [from, to] = scene.in.particles.radius.keep_percent;
+    return fmt::format("keep_percent = [{:.4g}, {:g}]", from + part * (to - from), to);
+  };
+  std::string words = fmt::format("particles.radius: {}; {} leaves them out, and about {:.2g} particles in their place",
+                                  fines_words(*fines), keep(fines->part), fines->without);
+  std::optional<scene::Fines> more = fines;
+  for (double part = step; more->without > many && part < largest_part; part += step) more = scene::fines(scene, part);
+  if (more->part > fines->part) words += fmt::format("; {} leaves about {:.2g} in all", keep(more->part), more->without);
+  warnings.push_back(words);
 }
 
 // Millions of steps that nothing is gained by: layers that go on after they have settled, particles harder than their
@@ -86,8 +91,8 @@ void warn_of_length(const scene::Scene& scene, Warnings& warnings) {
 }  // namespace
 
 std::string fines_words(const scene::Fines& fines) {
-  return fmt::format("the finest 5 % by mass, below {:.3g} m, are {:.0f} % of about {:.2g} particles", fines.diameter,
-                     100.0 * fines.share, fines.particles);
+  return fmt::format("the finest {:.0f} % by mass, below {:.3g} m, are {:.0f} % of about {:.2g} particles",
+                     100.0 * fines.part, fines.diameter, 100.0 * fines.share, fines.particles);
 }
 
 std::vector<std::string> notes_of(const scene::Scene& scene, int ranks, int on_machine, int cores) {

@@ -22,8 +22,8 @@ double time_of_fall(const input::Input& in) {
   return g > 0.0 ? (up + std::sqrt(up * up + 2.0 * g * in.layers.thickness)) / g : 0.0;
 }
 
-// Why a bed moves on, and what to change: the first of these that is so.
-std::string why_it_moves(const scene::Scene& scene) {
+// Why a bed moves on, and what to change: the first of these that is so. `confined`: for so long under its stress [s].
+std::string why_it_moves(const scene::Scene& scene, double confined) {
   const input::Input& in = scene.in;
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   const double lift = in.drag.coefficient * in.drag.fluid_velocity[vertical];
@@ -50,10 +50,11 @@ std::string why_it_moves(const scene::Scene& scene) {
         "\"shared\", or contact.tangential = \"mindlin\"",
         std::max(in.contact.friction, in.contact.wall_friction), law == input::Regularisation::stop ? "stop" : "none");
   }
-  return fmt::format(
-      "it needs more time or more damping: raise rest.wait (now {:.3g} s), layers.duration ({:.3g} s) or "
-      "contact.damping_ratio ({:.3g})",
-      scene.wait, in.layers.duration, in.contact.damping_ratio);
+  const std::string wait = confined > 0.0 ? fmt::format("confinement.wait (now {:.3g} s)", confined)
+                                          : fmt::format("rest.wait (now {:.3g} s), layers.duration ({:.3g} s)",
+                                                        scene.wait, in.layers.duration);
+  return fmt::format("it needs more time or more damping: raise {} or contact.damping_ratio ({:.3g})", wait,
+                     in.contact.damping_ratio);
 }
 
 // Overlaps go with E^(-2/3).
@@ -74,8 +75,9 @@ void add_rest(const scene::Scene& scene, const RunRecord& record, std::vector<st
     if (c.met()) continue;
     const bool overlap = c.of_overlap;
     const bool soft = overlap && (rests || scene::expected_overlap(scene, scene.in.particles.youngs_modulus) > c.limit);
-    missed.push_back(fmt::format("rest.{}: the {} is {:.3g}, {}; {}", c.name, c.words, c.value, words_of_limit(c),
-                                 soft ? how_much_harder(scene, c.value, c.limit) : why_it_moves(scene)));
+    missed.push_back(
+        fmt::format("rest.{}: the {} is {:.3g}, {}; {}", c.name, c.words, c.value, words_of_limit(c),
+                    soft ? how_much_harder(scene, c.value, c.limit) : why_it_moves(scene, record.confined.seconds)));
   }
 }
 
@@ -194,7 +196,7 @@ void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers
       ExitCode::numerical_failure,
       fmt::format("layer {}: the energy of the bed grows from layer to layer: {:.2g} m g d at most after one of "
                   "the first {}, {:.2g} m g d at least after one of the last {}; {}",
-                  layers.size(), most_before, few, least_now, few, why_it_moves(scene)));
+                  layers.size(), most_before, few, least_now, few, why_it_moves(scene, 0.0)));
 }
 
 }  // namespace packmpi::report

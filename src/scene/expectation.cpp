@@ -144,19 +144,18 @@ double deviation_of_count(const Scene& scene, double particles) {
   return std::sqrt(particles * (uneven_volumes(scene) - 1.0));
 }
 
-std::optional<Fines> fines(const Scene& scene) {
-  constexpr double finest = 0.05;
+std::optional<Fines> fines(const Scene& scene, double part) {
   const input::Radius& radius = scene.in.particles.radius;
   const auto graded = [](const input::Radius& of) {
     return of.distribution == input::SizeDistribution::grading && of.weighting == input::Weighting::mass;
   };
   if (!graded(radius) && std::ranges::none_of(radius.parts, graded)) return {};
-  Fines found;
-  const double r = scene.sizes.curve().quantile(input::Weighting::mass, finest);
+  Fines found{.part = part};
+  const double r = scene.sizes.curve().quantile(input::Weighting::mass, part);
   found.diameter = 2.0 * r;
   found.share = scene.sizes.curve().passing(input::Weighting::number, r);
   found.particles = static_cast<double>(expected_filling(scene, expected_fraction(scene).value).particles);
-  found.without = found.particles * (1.0 - found.share) / (1.0 - finest);
+  found.without = found.particles * (1.0 - found.share) / (1.0 - part);
   return found;
 }
 

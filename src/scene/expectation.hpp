@@ -24,15 +24,16 @@ struct BedFraction {
 /// sqrt(N) times the coefficient of variation of the volume (renewal theory, for many); 0 for equal radii.
 [[nodiscard]] double deviation_of_count(const Scene& scene, double particles);
 
-/// What the finest 5 % by mass of a grading curve come to.
+/// What the finest part of a grading curve by mass comes to.
 struct Fines {
+  double part = 0.05;      ///< [-] by mass
   double diameter = 0.0;   ///< [m] below which they are
   double share = 0.0;      ///< of the particles
   double particles = 0.0;  ///< of the scene, in all
   double without = 0.0;    ///< of the scene without them, at the same solid volume
 };
 /// None: the sizes are not a grading curve by mass, nor those of a component. Local, pure.
-[[nodiscard]] std::optional<Fines> fines(const Scene& scene);
+[[nodiscard]] std::optional<Fines> fines(const Scene& scene, double part = 0.05);
 
 /// Height [m] by which a layer raises a bed of this solid fraction.
 [[nodiscard]] double rise_of_layer(const Scene& scene, double fraction);

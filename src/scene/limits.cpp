@@ -122,6 +122,22 @@ double speed_bound(const Scene& scene) {
   return speed_headroom * (input::impact_speed(in, drop) + fluid + spin + near_speed(scene));
 }
 
+namespace {
+
+/// How a grading is rid of particles whose weight is too small by `factor`; "" if it is none.
+std::string without_fines(const Scene& scene, double factor) {
+  const input::Radius& radius = scene.in.particles.radius;
+  const bool graded = radius.distribution == input::SizeDistribution::grading;
+  if (!graded || radius.weighting != input::Weighting::mass || !(scene.in.jamming.gravity > 0.0)) return "";
+  const double r = scene.sizes.smallest() * std::cbrt(factor);
+  const auto& [from, to] = radius.keep_percent;
+  const double passing = from + (to - from) * scene.sizes.curve().passing(input::Weighting::mass, r);
+  return fmt::format(" (particles.radius.keep_percent = [{:.1f}, {:g}] leaves out those below a diameter of {:.2g} m)",
+                     0.1 * std::ceil(10.0 * passing + 0.5), to, 2.0 * r);
+}
+
+}  // namespace
+
 double force_quantum(const Scene& scene) {
   const double exact = largest_force(scene) / largest_quanta;
   if (!std::isfinite(exact) || exact <= 0.0) {
@@ -134,12 +150,14 @@ double force_quantum(const Scene& scene) {
   const double quantum = std::ldexp(1.0, exponent);
   const double least = least_force(scene);
   if (quantum <= coarsest * least) return quantum;
-  throw Error(ExitCode::bad_input,
-              fmt::format("{}: jamming.gravity: forces up to {:.2g} N cannot be summed beside {:.2g} N, the {} of the "
-                          "smallest particle: they are 2^50 apart at most; lower {}, narrow the radii or raise gravity",
-                          scene.in.file, quantum * largest_quanta, least,
-                          scene.in.jamming.gravity > 0.0 ? "weight" : "lightest contact",
-                          scene.in.near_field ? "the near field" : "layers.velocity"));
+  throw Error(
+      ExitCode::bad_input,
+      fmt::format("{}: jamming.gravity: forces up to {:.2g} N cannot be summed beside {:.2g} N, the {} of the "
+                  "smallest particle: they are 2^50 apart at most; lower {}, narrow the radii{} or raise gravity",
+                  scene.in.file, quantum * largest_quanta, least,
+                  scene.in.jamming.gravity > 0.0 ? "weight" : "lightest contact",
+                  scene.in.near_field ? "the near field" : "layers.velocity",
+                  without_fines(scene, quantum / coarsest / least)));
 }
 
 }  // namespace packmpi::scene

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <sstream>
 
 #include "exporters/law.hpp"
+#include "exporters/yade_walls.hpp"
 #include "geometry/cut_volume.hpp"
 #include "geometry/round_volume.hpp"
 #include "input/read.hpp"
@@ -418,12 +420,16 @@ TEST_F(Convert, WallsOfVesselsAreThoseThatACodeHas) {
   EXPECT_GT(cone[3], 0.6);
   EXPECT_TRUE(contains(lammps, "region          collar cylinder z 6 6 6 INF INF side in units box"));
   EXPECT_TRUE(contains(lammps, "region mantle\n") && contains(lammps, "region collar\n"));
-  EXPECT_TRUE(contains(in_file(hopper, "yade"), "geom.facetCone((6, 6, "));
+  const std::string yade = in_file(hopper, "yade");
+  EXPECT_TRUE(contains(yade, "    6: (Vector3(6, 6, 0), 0.58") && contains(yade, "    8: (Vector3(6, 6, 0), 6, 1, "));
+  EXPECT_TRUE(contains(yade, "PyRunner(command='push_off_round_walls()', iterPeriod=1, initRun=True)"));
   EXPECT_TRUE(contains(refused({.pack = hopper, .format = "liggghts"}, ExitCode::bad_input), "use lammps or yade, or"));
   const std::string ball = pack_in("shape = \"sphere\"\ndiameter = 10.0\nheight = 0.6\n");
   EXPECT_TRUE(contains(in_file(ball, "lammps"), "region          mantle sphere 5 5 5 5 side in units box"));
   EXPECT_FALSE(contains(in_file(ball, "lammps"), "zplane"));
-  EXPECT_TRUE(contains(refused({.pack = ball, .format = "yade"}, ExitCode::bad_input), "use lammps, or csv"));
+  EXPECT_TRUE(contains(in_file(ball, "yade"), "    6: (Vector3(5, 5, 5), 5, 1, Vector3(1, 1, 1), "));
+  EXPECT_FALSE(contains(in_file(ball, "yade"), "utils.wall("));
+  EXPECT_TRUE(contains(refused({.pack = ball, .format = "liggghts"}, ExitCode::bad_input), "use lammps or yade, or"));
   const std::string ring = pack_in("shape = \"annulus\"\ndiameter = 12.0\ninner_diameter = 4.0\nheight = 0.6\n");
   EXPECT_TRUE(contains(in_file(ring, "lammps"), "region          inner cylinder z 6 6 2 INF INF side out units box"));
   EXPECT_TRUE(contains(in_file(ring, "liggghts"), "zcylinder 2 6 6"));
@@ -441,9 +447,13 @@ TEST_F(Convert, AMeshIsCarriedAsTriangles) {
   const std::string path = make_pack_of(50, 3, text);
   const Converted yade = convert_pack(comm_, {.pack = path, .format = "yade", .force = true});
   const std::string script = contents(yade.files.at(1));
-  EXPECT_TRUE(contains(script, "walls = [utils.facet([points[k] for k in t], material='walls') for t in triangles]"));
-  EXPECT_TRUE(contains(script, "    (0.5, 0, 0.75),\n"));
+  EXPECT_TRUE(contains(script, "walls = [utils.facet(corners, material='walls') for corners in [\n"));
+  const std::string facets =
+      script.substr(script.find("for corners in [\n"), script.find("\n]]") - script.find("for corners in [\n"));
+  EXPECT_EQ(std::ranges::count(facets, '\n'), 6) << "a facet over each side of the box: " << facets;
   EXPECT_TRUE(contains(script, "# mesh: the room of 1.5 m3 inside 48 triangles, from z = 0 to 1.5"));
+  const mesh::Surface ell(testing::l_prism(1.0), "ell");
+  EXPECT_EQ(exporters::yade::facets(ell).size(), ell.shell().triangles.size()) << "an edge sticks out";
   const Converted liggghts = convert_pack(comm_, {.pack = path, .format = "liggghts", .force = true});
   ASSERT_EQ(liggghts.files.size(), 3U);
   EXPECT_TRUE(contains(contents(liggghts.files[1]), "mesh/surface file ${surface} type 2"));

@@ -299,6 +299,13 @@ TEST(Fines, AreToldByNumberAndMayBeLeftOut) {
   EXPECT_NEAR(found->particles * mean_volume / solid, 1.0, 0.01);
   EXPECT_NEAR(found->without, found->particles * (1.0 - found->share) / 0.95, 1e-6 * found->particles);
   EXPECT_THAT(warnings_of(soil), ::testing::Contains(HasSubstr("keep_percent = [5, 100] leaves them out")));
+  const auto part = [&](double of) { return scene::fines(soil, of)->without; };
+  double least = 0.05;
+  while (part(least) > 1e6) least += 0.05;
+  ASSERT_GT(part(0.05), 1e6);
+  EXPECT_THAT(warnings_of(soil),
+              ::testing::Contains(HasSubstr(
+                  fmt::format("; keep_percent = [{:g}, 100] leaves about {:.2g} in all", 100.0 * least, part(least)))));
   EXPECT_FALSE(scene::fines(scene::build(input::parse(brick, "brick.toml", {}))));
   text +=
       "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"soil\"\nshare = 1\n[[component]]\nname = "

@@ -215,9 +215,10 @@ observe::Rest resting() {
           .network = {}};
 }
 
-std::vector<std::string> missed(const input::Input& in, const observe::Rest& rest) {
+std::vector<std::string> missed(const input::Input& in, const observe::Rest& rest, double confined = 0.0) {
   const scene::Scene scene = scene::build(in);
   report::RunRecord record;
+  record.confined.seconds = confined;
   record.reached = true;
   record.rest = rest;
   record.criteria = report::judge(scene, rest);
@@ -268,6 +269,8 @@ TEST(Judge, TheCauseIsTheFirstThatIsSo) {
   rest.kinetic_energy = 1.0;
   const auto words = [&](const input::Input& in) { return missed(in, rest).at(0); };
   EXPECT_THAT(words(judged_input()), HasSubstr("raise rest.wait (now 1 s), layers.duration (2 s) or contact.damping"));
+  EXPECT_THAT(missed(judged_input(), rest, 3.0).at(0),
+              HasSubstr("raise confinement.wait (now 3 s) or contact.damping"));
   input::Input in = judged_input();
   in.contact.regularisation = input::Regularisation::stop;
   EXPECT_THAT(words(in), HasSubstr("friction 0.2 with contact.regularisation = \"stop\""));

@@ -123,5 +123,20 @@ TEST(Scene, ForceQuantumIsAPowerOfTwoThatResolvesAWeightAndHoldsAnImpact) {
   }
 }
 
+TEST(Scene, OfASoilWithGrainsTooLightItIsSaidWhatToLeaveOut) {
+  input::Input in = small_input(3, 1.0, 0.01);
+  in.particles.radius.distribution = input::SizeDistribution::grading;
+  in.particles.radius.weighting = input::Weighting::mass;
+  in.particles.radius.diameter_curve = {{2e-6, 0.0}, {6e-5, 10.0}, {2e-4, 30.0}, {2e-3, 60.0}, {2e-2, 100.0}};
+  in.dynamics.time_step.reset();
+  const std::string words = complaint(in), mark = "particles.radius.keep_percent = [";
+  ASSERT_NE(words.find(mark), std::string::npos) << words;
+  const double enough = std::stod(words.substr(words.find(mark) + mark.size()));
+  in.particles.radius.keep_percent = {0.9 * enough, 100.0};
+  EXPECT_NE(complaint(in).find(mark), std::string::npos);
+  in.particles.radius.keep_percent = {enough, 100.0};
+  EXPECT_EQ(complaint(in), "");
+}
+
 }  // namespace
 }  // namespace packmpi::scene
