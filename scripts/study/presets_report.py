@@ -3,7 +3,7 @@ import math
 import statistics
 
 import measuring
-from packmpi.style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
+from packmpi.style import ACHIEVED, LOOK, OTHER, TARGET
 
 # How far from the converged answer, overlap as a share of it; and how many times fewer particle-steps in 3D.
 BOUNDS = {"balanced": {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}, "draft": {"phi_bulk": 0.010}}
@@ -126,12 +126,11 @@ def plot(path, rows, scenes):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
-    plt.rcParams.update({"font.size": 9.0, "axes.grid": True, "grid.color": GRID, "axes.axisbelow": True, "axes.spines.top": False,
-                         "axes.spines.right": False, "legend.frameon": False, "figure.facecolor": BACKGROUND, "svg.hashsalt": "packmpi", "text.color": INK})
+    plt.rcParams.update(LOOK)
     names = [scene for scene in scenes if made(rows, scene, "reference")]
     figure, panels = plt.subplots(1, 4, figsize=(9.6, 0.5 + 0.32 * len(names)), layout="constrained", sharey=True)
     shown = {"phi_bulk": 0.012, "coordination": 0.4, "overlap": 0.3}   # what is beyond stands in the table
-    titles = {"phi_bulk": "phi_bulk", "coordination": "coordination number", "overlap": "mean overlap, relative", "fewer": "times fewer particle-steps"}
+    titles = {"phi_bulk": r"$\Delta\phi_\mathrm{bulk}$", "coordination": r"$\Delta$ coordination number", "overlap": r"$\Delta$ mean overlap, relative", "fewer": "times fewer particle-steps"}
     for axes, key in zip(panels, titles):
         for setting, colour, marker in (("balanced", ACHIEVED, "o"), ("draft", OTHER, "s")):
             lines = [k for k, scene in enumerate(names) if made(rows, scene, setting)]

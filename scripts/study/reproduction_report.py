@@ -2,6 +2,9 @@
 import csv
 import math
 
+import common  # noqa: F401  (packmpi is found)
+from packmpi.style import ACHIEVED, LOOK, OTHER, TARGET
+
 TITLES = {"5.1": "2D, equal discs", "5.2": "2D, Gaussian discs",
           "5.3": "3D, equal spheres", "5.4": "3D, Gaussian spheres"}
 FLAT = ("5.1", "5.2")
@@ -185,6 +188,7 @@ def plot(path, cells):
         raise SystemExit("reproduce: matplotlib is missing for the plot; install it with: scripts/setup.sh --plots")
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
+    plt.rcParams.update(LOOK)
     examples = [example for example in TITLES if any(cell.example == example for cell in cells)]
     figure, all_axes = plt.subplots(1, len(examples), figsize=(2.6 * len(examples) + 0.4, 3.9), squeeze=False)
     for axes, example in zip(all_axes[0], examples):
@@ -194,15 +198,12 @@ def plot(path, cells):
         axes.set_xticks([0.0, 1.0], ["rotation on", "rotation off"], fontsize=8.5)
         axes.set_xlim(-0.5, 1.5)
         axes.tick_params(axis="y", labelsize=8)
-        axes.grid(axis="y", color="#e5e5e5", linewidth=0.7)
-        axes.set_axisbelow(True)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
+        axes.grid(axis="x", visible=False)
     all_axes[0][0].set_ylabel("solid fraction below $H_d$")
     marks, names = all_axes[0][0].get_legend_handles_labels()
     first = {name: mark for mark, name in zip(marks[::-1], names[::-1])}
     names = list(dict.fromkeys(names))
-    figure.legend([first[name] for name in names], names, loc="lower center", ncol=3, frameon=False, fontsize=8.5)
+    figure.legend([first[name] for name in names], names, loc="lower center", ncol=3)
     figure.tight_layout(rect=(0.0, 0.07, 1.0, 1.0))
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=130)
@@ -210,15 +211,15 @@ def plot(path, cells):
 
 def draw_cell(axes, cell, x):
     """Every pack as a dot, means as bars: the paper at the left, ours in the middle, the independent mean at the right."""
-    series = ((-0.22, cell.paper, "#8d99ae", "paper (bar: mean)"),
-              (0.0, cell.all("phi"), "#00798c", "packmpi (bar: mean)"))
+    series = ((-0.22, cell.paper, OTHER, "paper (bar: mean)"),
+              (0.0, cell.all("phi"), ACHIEVED, "packmpi (bar: mean)"))
     for offset, values, colour, name in series:
         spread = [x + offset + 0.05 * ((k % 3) - 1) for k in range(len(values))]
         axes.plot(spread, values, "o", markersize=4.2, color=colour, alpha=0.75, markeredgewidth=0.0, label=name)
         axes.plot([x + offset - 0.1, x + offset + 0.1], [mean(values)] * 2, color=colour, linewidth=1.8)
     other = cell.independent
     axes.errorbar([x + 0.22], [other["phi_mean"]], yerr=[max(other["phi_sd"], 1e-4)], fmt="D", markersize=5.0,
-                  color="#d1495b", capsize=3, label="independent program (mean ± sd)")
+                  color=TARGET, capsize=3, label="independent program (mean ± sd)")
 
 
 def write(doc, data, rows, readings):

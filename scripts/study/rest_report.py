@@ -3,7 +3,7 @@ import math
 import statistics
 
 import measuring
-from packmpi.style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET
+from packmpi.style import ACHIEVED, INK, LOOK, OTHER, TARGET
 
 # Serial code of ours, one seed each (+- .003 in phi_bulk): 3D, r .02, walls, floor .5 x .5, layers of 1 s.
 INDEPENDENT = {0.001: (0.615, 5.15), 0.1: (0.598, 5.05), 0.2: (0.587, 4.78), 0.5: (0.564, 4.49), 1.0: (0.560, 4.30), 10.0: (0.568, 4.19)}
@@ -118,8 +118,7 @@ def plot(path, rows):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
-    plt.rcParams.update({"font.size": 9.5, "axes.grid": True, "grid.color": GRID, "axes.axisbelow": True, "axes.spines.top": False,
-                         "axes.spines.right": False, "legend.frameon": False, "figure.facecolor": BACKGROUND, "svg.hashsalt": "packmpi", "text.color": INK})
+    plt.rcParams.update(LOOK)
     figure, both = plt.subplots(2, 1, figsize=(5.6, 6.0), layout="constrained", sharex=True)
     for axes, key, place in zip(both, ("phi_bulk", "coordination_bulk"), (1, 2)):
         for k, published in enumerate(PUBLISHED):
@@ -138,8 +137,8 @@ def plot(path, rows):
         rough = chosen(rows, part="curve", rolling="0.2")
         if rough:
             axes.annotate("rolling, twisting 0.2", (float(rough[0]["mu"]), mean(rough, key)), (6, -4), textcoords="offset points", fontsize=8)
-        axes.set(xscale="log", ylabel={"phi_bulk": "phi_bulk", "coordination_bulk": "contacts of a sphere"}[key])
-    both[1].set_xlabel("friction")
+        axes.set(xscale="log", ylabel={"phi_bulk": r"solid fraction $\phi_\mathrm{bulk}$", "coordination_bulk": "contacts of a sphere"}[key])
+    both[1].set_xlabel(r"friction $\mu$")
     both[0].legend(fontsize=8)
     figure.savefig(path, metadata={"Date": None})
 

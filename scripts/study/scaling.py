@@ -414,23 +414,23 @@ def plot(options, model, clusters):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
-    figure, axes = pyplot.subplots(figsize=(7.0, 4.6))
+    from packmpi import style
+    pyplot.rcParams.update(style.LOOK)
+    figure, axes = pyplot.subplots(figsize=(7.0, 4.6), layout="constrained")
     grid = [round(10 ** (2 + k / 12)) for k in range(25)]
     grid = [r if r < 64 else round(math.sqrt(r)) ** 2 for r in grid]   # square numbers: pencils of equal sides
-    for spheres, colour in zip(SIZES, ("tab:blue", "tab:orange", "tab:green")):
-        for kind, style in (("slab", "--"), ("pencil", "-")):
+    for spheres, colour in zip(SIZES, (style.OTHER, style.ACHIEVED, style.TARGET)):
+        for kind, line in (("slab", "--"), ("pencil", "-")):
             rows = [(r, *(predict(model, spheres, r, kind, clusters[c]) for c in ("low", "central", "high"))) for r in grid]
             rows = [(r, low["total"], mid["total"], high["total"]) for r, low, mid, high in rows if mid]
             if not rows:
                 continue
             x, low, mid, high = zip(*rows)
-            axes.plot(x, mid, style, color=colour, label=f"{spheres:.0e} spheres, {kind}")
+            axes.plot(x, mid, line, color=colour, label=f"{spheres:.0e} spheres, {kind}")
             if kind == "pencil":
                 axes.fill_between(x, low, high, color=colour, alpha=0.15, linewidth=0)
     axes.set(xscale="log", yscale="log", xlabel="ranks", ylabel="wall time [s]", title="input/million.toml on larger floors, predicted; bands: pencil")
-    axes.grid(alpha=0.3, which="both")
-    axes.legend(fontsize=8)
-    figure.tight_layout()
+    axes.legend()
     figure.savefig(options.image, dpi=110)
 
 

@@ -3,6 +3,11 @@ import math
 import statistics
 
 import measuring
+from packmpi.style import ACHIEVED, LOOK, OTHER, TARGET
+
+SHADES = ("#00798c", "#8d99ae", "#30638e", "#222222", "#e3a857", "#7a5195", "#4f8a5b")
+KNOB_WORDS = {"step": "time step", "duration": "duration of a layer", "settled": "layers until settled", "layers": "layers' thickness, fraction", "stiffness": "softer while filling",
+              "friction": "cap of friction", "window": "frozen bed", "relaxation": "final relaxation", "implicit": "implicit steps", "speed": "speed of insertion"}
 
 BALANCED = {"phi_3d": 0.002, "phi_2d": 0.005, "coordination": 0.05, "overlap": 0.20, "fewer": 8.0}
 DRAFT = {"phi": 0.010, "fewer": 20.0}
@@ -195,7 +200,8 @@ def plot(path, rows, knobs, scenes, reference):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 4.6), sharey=True)
+    plt.rcParams.update(LOOK)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.0, 4.6), sharey=True, layout="constrained")
     scene = "small_on"
     references, noise = made(rows, scene, reference), Noise(rows, scene)
     for k, (knob, settings) in enumerate(knobs.items()):
@@ -204,29 +210,32 @@ def plot(path, rows, knobs, scenes, reference):
                   for setting in settings if knob != "convergence" and (mine := made(rows, scene, setting)) and references]
         if points:
             x, y, e = zip(*points)
-            left.errorbar(x, y, e, fmt="os^vD<>ph*XPd"[k % 13], capsize=2, label=knob, markersize=10 if knob == "presets" else 6)
-    left.set_title("single knobs and presets, 3D, 8 layers, rotation on")
-    for k, name in enumerate(scenes):
-        references, noise = made(rows, name, reference), Noise(rows, name)
-        for preset, colour in (("balanced", "tab:blue"), ("draft", "tab:red")):
-            mine = made(rows, name, preset)
-            if references and mine:
-                right.errorbar(ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
-                               noise.of_difference("phi_bulk", mine, references), fmt="os^vD<>ph*XPd"[k % 13], color=colour, capsize=2,
-                               label=name if preset == "balanced" else None)
-    right.set_title("presets (blue balanced, red draft), all scenes")
+            left.errorbar(x, y, e, fmt="os^vD<>ph*XPd"[k % 13], color=TARGET if knob == "presets" else SHADES[k % len(SHADES)], linewidth=1,
+                          label=KNOB_WORDS.get(knob, knob), markersize=8 if knob == "presets" else 5)
+    left.set_title("one scene: single settings and presets")
+    for preset, colour in (("balanced", ACHIEVED), ("draft", OTHER)):
+        for plane, marker in ((False, "o"), (True, "s")):
+            points = []
+            for name in (name for name in scenes if is_2d(name) == plane):
+                references, mine, noise = made(rows, name, reference), made(rows, name, preset), Noise(rows, name)
+                if references and mine:
+                    points.append((ratio(references, mine, "particle_steps"), mean(mine, "phi_bulk") - mean(references, "phi_bulk"),
+                                   noise.of_difference("phi_bulk", mine, references)))
+            if points:
+                x, y, e = zip(*points)
+                right.errorbar(x, y, e, fmt=marker, color=colour, linewidth=1, markersize=5, label=f"{preset}, {'discs' if plane else 'spheres'}")
+    right.set_title("all scenes: presets")
     for axes in (left, right):
-        axes.axhspan(-BALANCED["phi_3d"], BALANCED["phi_3d"], color="0.88", zorder=0)
-        axes.axhline(0.0, color="0.5", linewidth=0.8)
+        axes.axhspan(-BALANCED["phi_3d"], BALANCED["phi_3d"], color=TARGET, alpha=0.14, linewidth=0, zorder=0)
         axes.set_xscale("log")
         axes.set_xticks([0.25, 0.5, 1, 2, 4, 8, 16, 32] if axes is left else [2, 4, 8, 16, 32], minor=False)
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter("")
         axes.set_xlabel("times fewer particle-steps than \"paper\"")
-    left.legend(fontsize=7, loc="lower left")
-    right.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1.0))
-    left.set_ylabel("phi_bulk - that of \"paper\"")
-    figure.tight_layout()
+    left.legend(fontsize=7.5, loc="lower left", ncol=3)
+    left.set_ylim(bottom=-0.0215)   # room for it
+    right.legend(loc="upper right")
+    left.set_ylabel(r'$\phi_\mathrm{bulk}$ less that of "paper"')
     figure.savefig(path, dpi=110)
     plt.close(figure)
 

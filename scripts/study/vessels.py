@@ -171,20 +171,19 @@ def figure(rows, x, y, bulk, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from packmpi import style
-    plt.rcParams.update({"font.size": 9.5})
-    _, (left, right) = plt.subplots(1, 2, figsize=(10.5, 3.8))
+    plt.rcParams.update(style.LOOK)
+    _, (left, right) = plt.subplots(1, 2, figsize=(10.5, 3.8), layout="constrained")
     share = np.linspace(0.03, 0.256, 200)
-    left.fill_between(share, [dense(s) for s in share], [loose(s) for s in share], color="0.9", label="Zou & Yu, dense to loose")
+    left.fill_between(share, [dense(s) for s in share], [loose(s) for s in share], color=style.GRID, label="Zou & Yu, dense to loose")
     left.plot(share, [dixon(s) - 0.4 + wide_limit(rows) for s in share], color=style.INK, label="Dixon, at our wide limit")
-    left.plot([1.0 / row["ratio"] for row in rows], [row["porosity"] for row in rows], "o", color=style.TARGET, markersize=4, label="packmpi")
-    left.set(xlabel="d / D", ylabel="porosity of the bulk")
-    left.legend(frameon=False)
+    left.plot([1.0 / row["ratio"] for row in rows], [row["porosity"] for row in rows], "o", color=style.ACHIEVED, markersize=4, label="packmpi")
+    left.set(xlabel="sphere over vessel, d / D", ylabel="porosity of the bulk")
+    left.legend()
     fine = np.linspace(0.0, 5.0, 1000)
     right.plot(fine, de_klerk(fine, bulk), color=style.INK, label="de Klerk")
-    right.plot(x[x < 5.0], y[x < 5.0], ".", color=style.TARGET, label=f"packmpi, D/d = {PROFILE_OF:g}")
+    right.plot(x[x < 5.0], y[x < 5.0], ".", color=style.ACHIEVED, label=f"packmpi, D/d = {PROFILE_OF:g}")
     right.set(xlabel="distance from the wall [d]", ylabel="porosity of the shell", ylim=(0.1, 1.0))
-    right.legend(frameon=False)
-    plt.tight_layout()
+    right.legend()
     plt.savefig(path, dpi=110)
 
 

@@ -18,7 +18,13 @@ constexpr std::string_view spheres_alone =
     "not in this version: particles are spheres or discs; nearest is contact.rolling_friction, which stands for shape";
 constexpr std::string_view hertz =
     "contacts are Hertz', whose stiffness follows from particles.youngs_modulus and particles.poisson_ratio";
-constexpr std::string_view stress = "a stress is asked for by [confinement]";
+constexpr std::string_view stress = "a stress is asked for by [confinement], isotropic or vertical and lateral";
+constexpr std::string_view rolling =
+    "resistance to rolling and twisting is contact.rolling_friction and contact.twisting_friction, as friction is of "
+    "the "
+    "normal force";
+constexpr std::string_view surface =
+    "a closed surface is shape = \"mesh\" with file and unit, of [container] or an [[obstacle]] (doc/vessels.md)";
 constexpr std::string_view materials =
     "several materials are [[component]] tables, one each, with name, share and what differs (doc/howto_mixture.md)";
 constexpr std::string_view strata =
@@ -41,7 +47,14 @@ constexpr std::array all{
     Known{"jkr", "", no_attraction},
     Known{"capillar", "", no_attraction},
     Known{"moisture", "", no_attraction},
+    Known{"rolling", "", rolling},
+    Known{"twisting", "", rolling},
     Known{"clump", "", spheres_alone},
+    Known{"shape", "container",
+          "particles are spheres or discs, and contact.rolling_friction stands for their shape; the vessel's is "
+          "container.shape"},
+    Known{"mesh", "", surface},
+    Known{"stl", "", surface},
     Known{"multisphere", "", spheres_alone},
     Known{"ellips", "", spheres_alone},
     Known{"aspect_ratio", "", spheres_alone},
@@ -55,7 +68,7 @@ constexpr std::array all{
     Known{"obstacle", "container", bodies},
     Known{"internals", "", bodies},
     Known{"baffle", "", bodies},
-    Known{"pressure", "confinement", stress},
+    Known{"pressure", "", stress},
     Known{"servo", "confinement", stress},
     Known{"piston", "confinement", stress},
     Known{"vibrat", "", shaking},

@@ -21,14 +21,9 @@ from matplotlib.figure import Figure  # noqa: E402
 from . import sizes as size_curves  # noqa: E402
 from .problem import Problem  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
-from .style import ACHIEVED, BACKGROUND, GRID, INK, OTHER, TARGET  # noqa: E402
+from .style import ACHIEVED, BACKGROUND, INK, LOOK, OTHER, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
 
-LOOK = {
-    "font.size": 9.5, "axes.edgecolor": INK, "axes.labelcolor": INK, "text.color": INK, "xtick.color": INK,
-    "ytick.color": INK, "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.7, "axes.axisbelow": True,
-    "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "legend.fontsize": 8.5,
-    "lines.linewidth": 1.6, "figure.facecolor": BACKGROUND, "axes.facecolor": "none", "svg.hashsalt": "packmpi"}
 LOGARITHMIC = 1.5   # largest over smallest diameter, beyond which sizes get a logarithmic axis, as sieves do
 
 
