@@ -156,15 +156,16 @@ std::string in_file(const Specimen& s) {
       "compute         strongest all reduce max c_contact\n"
       "variable        volume_now equal c_volume\n"
       "variable        force_now equal c_strongest\n"
-      "{3}thermo_style    custom step atoms ke c_volume c_strongest{4}\n"
+      "{8}{3}thermo_style    custom step atoms ke c_volume c_strongest{9}{4}\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
       "run             0\n{0}\n"
       "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
       "anew before another one\n"
-      "{5}{1}{2}{7}{6}run             ${{steps}}\n{0}",
+      "{5}{1}{2}{7}{6}run             ${{steps}}\n{0}{10}",
       report, s.scene.features.mixture ? lammps_walls(s) : walls(s),
       s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
-      hold(s), begin_to_move(s, s.step(), "set             group all omega 0 0 0\n"));
+      hold(s), begin_to_move(s, s.step(), "set             group all omega 0 0 0\n"), watch_displacement(),
+      displacement_columns, drift_line(s));
   return text;
 }
 

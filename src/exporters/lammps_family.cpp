@@ -67,6 +67,21 @@ std::string begin_to_move(const Specimen& s, double step, const char* stand) {
       step_of_springs, stand, move);
 }
 
+std::string watch_displacement() {
+  return "compute         moved all displace/atom\n"
+         "compute         farthest all reduce max c_moved[4]\n"
+         "compute         apart all reduce ave c_moved[4]\n";
+}
+
+std::string drift_line(const Specimen& s) {
+  const double diameter = 2.0 * s.scene.sizes.mean();
+  return fmt::format(
+      "variable        farthest_now equal c_farthest/{0}\nvariable        apart_now equal c_apart/{0}\n"
+      "print           \"DRIFT the farthest particle has moved by ${{farthest_now}} mean diameters, all by "
+      "${{apart_now}} on average\"\n",
+      diameter);
+}
+
 std::string boundary_words(const Specimen& s) {
   std::string words;
   for (std::size_t axis = 0; axis < 3; ++axis) {

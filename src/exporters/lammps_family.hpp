@@ -19,6 +19,12 @@ void atom_row(Text& out, const Outgoing& particle, double density);
 /// `step` [s]; `stand`: the command that ends all spins.
 [[nodiscard]] std::string begin_to_move(const Specimen& specimen, double step, const char* stand);
 
+/// Columns of thermo_style and what makes them, for the line that tells how far particles have moved.
+[[nodiscard]] std::string watch_displacement();
+inline constexpr const char* displacement_columns = " c_farthest c_apart";
+/// The line, in mean diameters; after a run.
+[[nodiscard]] std::string drift_line(const Specimen& specimen);
+
 /// " p f f": what the command boundary wants.
 [[nodiscard]] std::string boundary_words(const Specimen& specimen);
 

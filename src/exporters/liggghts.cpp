@@ -116,10 +116,11 @@ std::string in_file(const Specimen& s) {
       "compute         strongest all reduce max v_force\n"
       "variable        now equal step\nvariable        count equal atoms\nvariable        volume_now equal c_volume\n"
       "variable        mass_now equal mass(all)\nvariable        force_now equal c_strongest\n"
-      "thermo_style    custom step atoms ke c_volume c_strongest\n"
+      "{2}thermo_style    custom step atoms ke c_volume c_strongest{3}\n"
       "thermo_modify   lost error norm no\nthermo          100\n\n"
-      "run             0\n{0}{1}run             ${{steps}}\n{0}",
-      report, begin_to_move(s, step_of_stronger_dashpot(s), "set             group all omegax 0 omegay 0 omegaz 0\n"));
+      "run             0\n{0}{1}run             ${{steps}}\n{0}{4}",
+      report, begin_to_move(s, step_of_stronger_dashpot(s), "set             group all omegax 0 omegay 0 omegaz 0\n"),
+      watch_displacement(), displacement_columns, drift_line(s));
   return text;
 }
 

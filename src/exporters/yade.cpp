@@ -173,6 +173,15 @@ constexpr const char* report =
     "    print('PACK after %d steps: %d particles, volume %.17g m3, mass %.17g kg, largest contact force %.17g N'\n"
     "          % (O.iter, len(ids), volume, mass, force), flush=True)\n\n\n";
 
+/// How far particles have moved since the pack; YADE's positions are not wrapped.
+std::string drift(const Specimen& s) {
+  return fmt::format(
+      "moved = [b.state.displ().norm() / {} for b in (O.bodies[i] for i in ids)]\n"
+      "print('DRIFT the farthest particle has moved by %g mean diameters, all by %g on average'\n"
+      "      % (max(moved), sum(moved) / len(moved)), flush=True)\n",
+      2.0 * s.scene.sizes.mean());
+}
+
 std::string engines(const Specimen& s) {
   const bool mesh = s.scene.container.is_mesh();
   const double g = s.scene.in.jamming.gravity;
@@ -212,7 +221,7 @@ std::string script(const Specimen& s) {
   text += walls(s) + "O.bodies.append(walls)\n\n";
   if (has_round_walls(s)) text += round_walls(s);
   text += engines(s);
-  return text + report + first_step(s) + "report()\n" + stretch(s) + "O.run(steps, True)\nreport()\n";
+  return text + report + first_step(s) + "report()\n" + stretch(s) + "O.run(steps, True)\nreport()\n" + drift(s);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ def check_floor(name, pack, here):
     text = (here / f"{name}.lammps.in").read_text()
     vertical = "y" if name == "paper_5_1" else "z"
     text = re.sub(r"(?m)^fix +(gravity|drag|wall_\w+) .*\n", "", text)
-    measure = f"variable push atom f{vertical}\ncompute push all reduce sum v_push\nvariable push_now equal c_push\nthermo_style custom step c_volume c_strongest c_push\n"
+    measure = f"variable push atom f{vertical}\ncompute push all reduce sum v_push\nvariable push_now equal c_push\nthermo_style custom step c_volume c_strongest c_farthest c_apart c_push\n"
     text = text.replace("run             ${steps}", measure + "run ${steps}") + 'print "FLOOR $(v_push_now:%.17g)"\n'
     (here / "floor.in").write_text(text)
     run("lmp", "-in", "floor.in", "-var", "steps", "0", "-screen", "none", "-log", "floor.log", folder=here)
