@@ -14,7 +14,7 @@
 
 namespace packmpi::input {
 
-enum class VesselShape { box, cylinder, frustum, sphere, annulus, prism, mesh };
+enum class VesselShape { box, cylinder, frustum, sphere, annulus, prism, mesh, circle };
 enum class Boundary { wall, periodic };
 enum class SizeDistribution {
   equal,

@@ -12,6 +12,10 @@ void take_vessel(Container& container) {
   if (container.shape == VesselShape::mesh) across = {container.mesh->high()[0], container.mesh->high()[1]};
   container.size = {across[0], across[1], container.height};
   container.boundary = {Boundary::wall, Boundary::wall};
+  if (container.dimension == 2) {
+    container.size = {across[0], container.height};
+    container.boundary = {Boundary::wall};
+  }
 }
 
 geometry::Container container_of(const Container& container) {
@@ -32,6 +36,7 @@ geometry::Container container_of(const Container& container) {
       box.ends = {0.5 * container.bottom_diameter, 0.5 * container.top_diameter};
       break;
     case VesselShape::sphere:
+    case VesselShape::circle:
       box.shape = geometry::Shape::sphere;
       break;
     case VesselShape::annulus:

@@ -59,7 +59,7 @@ input::Input smaller(const scene::Scene& scene) {
       sample_particles * volume / (scene::expected_fraction(scene).value * in.container.size.back());  // 2D: a length
   const double side = std::max(
       {dimension == 3 ? std::sqrt(area) : area, side_in_mean * diameter, side_in_columns * scene.column_width()});
-  if (!scene.container.straight()) in.container.size = {side, side, in.container.size.back()};
+  if (!scene.container.straight()) std::fill(in.container.size.begin(), in.container.size.end() - 1, side);
   const bool middle = side < scene.container.size[0] || !scene.container.straight();
   if (middle) in.container.shape = input::VesselShape::box;  // that of a round vessel
   for (std::size_t axis = 0; axis < in.container.boundary.size(); ++axis) {

@@ -122,9 +122,12 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
     std::string_view format;
     std::vector<Shape> shapes;
   };
-  const std::array<Carried, 3> able{Carried{"lammps", {Shape::frustum, Shape::sphere, Shape::annulus}},
-                                    Carried{"liggghts", {Shape::annulus, Shape::mesh}},
-                                    Carried{"yade", {Shape::frustum, Shape::sphere, Shape::annulus, Shape::mesh}}};
+  std::array<Carried, 3> able{Carried{"lammps", {Shape::frustum, Shape::sphere, Shape::annulus}},
+                              Carried{"liggghts", {Shape::annulus, Shape::mesh}},
+                              Carried{"yade", {Shape::frustum, Shape::sphere, Shape::annulus, Shape::mesh}}};
+  if (vessel.dimension == 2) {  // a circle is an upright cylinder there
+    able = {Carried{"lammps", {Shape::sphere}}, Carried{"liggghts", {Shape::sphere}}, Carried{"yade", {Shape::sphere}}};
+  }
   constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
   const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;
   if (usual || std::ranges::find(without, request.format) != without.end()) return;
@@ -134,10 +137,11 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
     if (one.format == request.format) return;
     names += fmt::format("{}{}", names.empty() ? "" : " or ", one.format);
   }
+  const bool flat = vessel.dimension == 2;
   refuse_request(
       fmt::format("--to {}: the walls of this pack's vessel are not written for it; use {}, or csv, xyz, vtk or esys, "
-                  "which carry particles alone; or take a box or a cylinder out of it by --cut",
-                  request.format, names));
+                  "which carry particles alone; or take a {} out of it by --cut",
+                  request.format, names, flat ? "rectangle" : "box or a cylinder"));
 }
 
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.

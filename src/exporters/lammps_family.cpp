@@ -109,6 +109,10 @@ std::vector<Region> round_regions(const Specimen& s) {
       break;
     }
     case geometry::Shape::sphere:
+      if (s.flat()) {
+        cylinder("mantle", c, "in");
+        break;
+      }
       regions.push_back(
           {"mantle", fmt::format("region          mantle sphere {0} {0} {0} {0} side in units box\n", c)});
       break;

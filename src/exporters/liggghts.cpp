@@ -80,6 +80,7 @@ std::string walls(const Specimen& s) {
   if (s.scene.container.lid) {
     text += fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s), type);
   }
+  if (!s.has(geometry::Surface::floor)) return text;
   return text + fmt::format(fmt::runtime(line), up, "floor", 0.0, limit(s), rolling(s), type);
 }
 

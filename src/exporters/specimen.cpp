@@ -76,7 +76,8 @@ std::string vessel_words(const Specimen& s) {
       return fmt::format("frustum: wall of radius {} at the floor and {} at H_d around x = y = {}", vessel.ends[0],
                          vessel.ends[1], s.radius());
     case geometry::Shape::sphere:
-      return fmt::format("sphere: wall of radius {0} around x = y = z = {0}", s.radius());
+      return s.flat() ? fmt::format("circle: wall of radius {0} around x = y = {0}", s.radius())
+                      : fmt::format("sphere: wall of radius {0} around x = y = z = {0}", s.radius());
     case geometry::Shape::annulus:
       return fmt::format("annulus: walls of radius {0} and {1} around x = y = {0}", s.radius(), vessel.core);
     case geometry::Shape::mesh:
@@ -246,7 +247,8 @@ std::string Specimen::beside(const char* ending) const {
 std::vector<std::string> header_lines(const Specimen& s) {
   std::string box = s.round() ? vessel_words(s) : "box: " + axis_words(s, 0);
   const bool mesh = s.scene.container.is_mesh();
-  for (std::size_t axis = s.round() ? 2 : 1; axis <= s.vertical() && !mesh; ++axis) box += "; " + axis_words(s, axis);
+  for (std::size_t axis = s.round() ? s.vertical() : 1; axis <= s.vertical() && !mesh; ++axis)
+    box += "; " + axis_words(s, axis);
   std::vector<std::string> lines{
       fmt::format("packmpi {}: units si (m, kg, s)", version()),
       fmt::format("{} {} of {} (made by packmpi {}), seed {}; solid volume {:.9g} m3, mass {:.9g} kg", s.count,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elementary.hpp"
+#include "geometry/cut_volume.hpp"
 #include "geometry/gauss.hpp"
 #include "geometry/volume.hpp"
 
@@ -43,6 +44,7 @@ double room_in_frustum(const Container& vessel, double margin, double low, doubl
 
 double room_in_sphere(const Container& vessel, double margin, double low, double high) {
   const double centre = vessel.radius(), r = std::max(0.0, centre - margin);
+  if (vessel.dimension == 2) return r > 0.0 ? volume_below(2, r, centre, high) - volume_below(2, r, centre, low) : 0.0;
   const double from = std::clamp(low - centre, -r, r), to = std::clamp(high - centre, -r, r);
   return std::numbers::pi * (to - from) * (r * r - (from * from + from * to + to * to) / 3.0);
 }
@@ -143,8 +145,9 @@ RoundWall Container::round(std::size_t k) const {
     wall.offset = -core;
     wall.radial = -1.0;
   } else if (k == 0 && shape == Shape::sphere) {
-    wall.centre[2] = radius();
-    wall.weight[2] = 1.0;
+    const auto up = static_cast<std::size_t>(vertical());
+    wall.centre[up] = radius();
+    wall.weight[up] = 1.0;
   } else if (k == 0 && shape == Shape::frustum) {
     const Cone cone(*this);
     wall.offset = cone.low * cone.cosine;
@@ -190,7 +193,7 @@ double Container::area_at(double height) const {
   if (is_mesh()) return room->area_at(height);
   if (straight()) return section();
   const double outer = ring(height, 0.0).outer;
-  return std::numbers::pi * (outer * outer);
+  return dimension == 2 ? 2.0 * outer : std::numbers::pi * (outer * outer);
 }
 
 double Container::level(double volume) const {
@@ -206,6 +209,9 @@ double Container::level(double volume) const {
 
 double Container::wall_area(double up_to) const {
   if (is_mesh()) return room->walls_below(up_to);
+  if (shape == Shape::sphere && dimension == 2) {
+    return 4.0 * radius() * elementary::arcsine(std::sqrt(std::clamp(up_to / size[0], 0.0, 1.0)));
+  }
   if (shape == Shape::sphere) return 2.0 * std::numbers::pi * radius() * std::min(up_to, size[0]);  // Archimedes
   if (shape == Shape::annulus) return 2.0 * std::numbers::pi * (radius() + core) * up_to;
   if (shape == Shape::frustum) {
@@ -251,7 +257,12 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
                                         [&](double z) { return room_between(radius, bottom, z); })
                              : bottom + (closes() ? 0.0 : height);
   }
-  place[0] = 0.5 * size[0], place[1] = 0.5 * size[1];
+  place[0] = 0.5 * size[0];
+  if (dimension == 2) {
+    place[0] += (2.0 * u[0] - 1.0) * ring(place[up], radius).outer;
+    return place;
+  }
+  place[1] = 0.5 * size[1];
   draw_in_ring(ring(place[up], radius), u, place);
   return place;
 }
@@ -262,6 +273,9 @@ double Container::slab(std::size_t axis, double from, double to, double low, dou
            (room->volume_below(low, axis, to) - room->volume_below(low, axis, from));
   }
   const double middle = 0.5 * size[axis];
+  if (dimension == 2) {
+    return area_in_rectangle(radius(), {from - middle, low - radius(), 0.0}, {to - middle, high - radius(), 0.0});
+  }
   const auto between = [&](double r) {
     const auto below = [&](double x) { return r > 0.0 ? volume_below(2, r, middle, x) : 0.0; };
     return below(to) - below(from);

@@ -32,8 +32,8 @@ inline constexpr std::size_t most_round = 3;   ///< those from it on are round w
 inline constexpr std::size_t most_surfaces = most_planes + most_round;
 inline constexpr std::size_t most_walls = most_surfaces + (std::size_t{1} << 24U);  ///< no mesh has as many parts
 
-/// What the vessel looks like: a rectangle or prism, a body of revolution about a vertical axis, or the inside of a
-/// mesh.
+/// What the vessel looks like: a rectangle or prism, a body of revolution about a vertical axis (in 2D a sphere is a
+/// circle), or the inside of a mesh.
 enum class Shape : std::int32_t { box, cylinder, frustum, sphere, annulus, mesh };
 
 /// Where a wall is, seen from a point: its distance [m], negative behind it, the unit vector towards it, and how it
@@ -89,7 +89,8 @@ struct RoundWall {
 };
 using RoundWalls = std::array<RoundWall, most_round>;
 
-/// Where the points of a height are that lie inside a round vessel: between two circles about its axis.
+/// Where the points of a height are that lie inside a round vessel: between two circles about its axis; in 2D on both
+/// sides of it.
 struct Ring {
   double inner, outer;  ///< [m]; both 0: nowhere
 };
@@ -98,7 +99,8 @@ struct Ring {
 /// the top or under a lid, whose lateral axes end in walls or are periodic; or a body of revolution about a vertical
 /// axis, which stands in such a prism and touches its sides: a cylinder, a frustum (which goes on above H_d as a
 /// cylinder if it widens, else as the cone that it is), a sphere that is filled up to H_d, or an annulus; or what is
-/// inside a closed surface of triangles, which has neither floor nor lid of its own.
+/// inside a closed surface of triangles, which has neither floor nor lid of its own. In 2D, there is the circle beside
+/// the rectangle.
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
@@ -125,6 +127,10 @@ struct Container {
     return shape == Shape::sphere || is_mesh() || (shape == Shape::frustum && ends[1] < ends[0]);
   }
   [[nodiscard]] constexpr double radius() const { return 0.5 * size[0]; }  ///< [m] of a round vessel where it is widest
+  /// The point at a lateral place, whose second coordinate 2D has not, and a height [m].
+  [[nodiscard]] constexpr Vec3 at(double x, double y, double height) const {
+    return dimension == 3 ? Vec3{x, y, height} : Vec3{x, height, 0.0};
+  }
 
   /// Of the horizontal cross-section at a height [m]: [m2]; 2D: its length [m].
   [[nodiscard]] double area_at(double height) const;
@@ -231,7 +237,7 @@ struct Container {
 
   /// Where at a height [m] the points of a round vessel are that its side walls are `margin` [m] away from at least.
   [[nodiscard]] Ring ring(double height, double margin) const;
-  /// Volume of such points between two heights [m]: [m3]. Exact.
+  /// Volume of such points between two heights [m]: [m3]; 2D: [m2]. Exact.
   [[nodiscard]] double room_between(double margin, double low, double high) const;
   /// The place of a centre for uniform numbers `u` in [0, 1): evenly over where a particle of `radius` [m] fits between
   /// the side walls and within `thickness` [m] above the height `low` [m]. Of a mesh without a height (NaN) if none was
@@ -239,7 +245,7 @@ struct Container {
   [[nodiscard]] Vec3 draw(const Vec3& u, double radius, double low, double thickness) const;
 
   /// Of what lies inside a round vessel the part with `axis` (0 or 1) between `from` and `to` and between two heights
-  /// (all [m]): [m3], to 1e-9 of the vessel's radius cubed.
+  /// (all [m]): [m3], to 1e-9 of the vessel's radius cubed; 2D: [m2], exact.
   [[nodiscard]] double slab(std::size_t axis, double from, double to, double low, double high) const;
   /// Calls found(normal, distance [m]) of planes nearer to `x` than `range` [m] that touch the side walls of a round
   /// vessel from outside, a twentieth of a radian apart: they leave a thousandth at most of what lies beside it. Of a

@@ -96,19 +96,34 @@ struct Breaks {
     note(q / a);
     if (q != 0.0) note(c / q);
   }
-  template <class Section>
-  double sum(const Section& section) {
+  // Of what there is from the first to the third of its heights, the second in their middle.
+  template <class Piece>
+  double over_pieces(const Piece& piece) {
     std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count));
     double all = 0.0;
-    for (std::size_t k = 0; k + 1 < count; ++k) {
-      const double middle = 0.5 * (at.at(k) + at.at(k + 1));
-      all += integral(section, at.at(k), middle) + integral(section, middle, at.at(k + 1));
-    }
+    for (std::size_t k = 0; k + 1 < count; ++k) all += piece(at.at(k), 0.5 * (at.at(k) + at.at(k + 1)), at.at(k + 1));
     return all;
+  }
+  template <class Section>
+  double sum(const Section& section) {
+    return over_pieces([&](double from, double middle, double to) {
+      return integral(section, from, middle) + integral(section, middle, to);
+    });
   }
 };
 
 double half_section(double r, double z) { return std::sqrt(std::max(0.0, (r - z) * (r + z))); }
+
+// Of two spheres or discs, the second b beside and `up` above the first.
+Breaks breaks_of(double r, double b, double up, double around, double low, double high) {
+  Breaks breaks(std::clamp(low, -r, r), std::clamp(high, -r, r));
+  const double a = (around - up) * (around + up) + (b - r) * (b + r);  // (a + 2 up z)^2 = 4 b^2 t^2
+  breaks.note_roots(4.0 * (up * up + b * b), 2.0 * up * (a - 2.0 * b * b),
+                    a * a - 4.0 * b * b * (around - up) * (around + up));
+  breaks.note(up - around);
+  breaks.note(up + around);
+  return breaks;
+}
 
 }  // namespace
 
@@ -125,16 +140,22 @@ double volume_in_cone(double r, double b, double radius, double rise, double low
 }
 
 double volume_in_ball(double r, double b, double up, double around, double low, double high) noexcept {
-  low = std::clamp(low, -r, r);
-  high = std::clamp(high, -r, r);
-  if (!(low < high) || !(around > 0.0)) return 0.0;
-  Breaks breaks(low, high);
-  const double a = (around - up) * (around + up) + (b - r) * (b + r);  // (a + 2 up z)^2 = 4 b^2 t^2
-  breaks.note_roots(4.0 * (up * up + b * b), 2.0 * up * (a - 2.0 * b * b),
-                    a * a - 4.0 * b * b * (around - up) * (around + up));
-  breaks.note(up - around);
-  breaks.note(up + around);
-  return breaks.sum([&](double z) { return common(half_section(r, z), half_section(around, z - up), b); });
+  if (!(std::max(low, -r) < std::min(high, r)) || !(around > 0.0)) return 0.0;
+  return breaks_of(r, b, up, around, low, high).sum([&](double z) {
+    return common(half_section(r, z), half_section(around, z - up), b);
+  });
+}
+
+double area_in_disc(double r, double b, double up, double around, double low, double high) noexcept {
+  if (!(std::max(low, -r) < std::min(high, r)) || !(around > 0.0)) return 0.0;
+  return breaks_of(r, b, up, around, low, high).over_pieces([&](double from, double middle, double to) {
+    const double s = half_section(r, middle), t = half_section(around, middle - up);
+    if (std::min(s, b + t) <= std::max(-s, b - t)) return 0.0;
+    const double own = 0.5 * (volume_below(2, r, 0.0, to) - volume_below(2, r, 0.0, from));
+    const double other = 0.5 * (volume_below(2, around, up, to) - volume_below(2, around, up, from));
+    const double aside = b * (to - from);  // of the middle of the second one's lines
+    return (s < b + t ? own : aside + other) - (-s > b - t ? -own : aside - other);
+  });
 }
 
 double volume_away_from(const Container& vessel, Surface surface, double margin, const Vec3& x, double r, double low,
@@ -142,7 +163,9 @@ double volume_away_from(const Container& vessel, Surface surface, double margin,
   const RoundWall wall = vessel.round(static_cast<std::size_t>(surface) - most_planes);
   const double across = x[0] - wall.centre[0], along = x[1] - wall.centre[1];
   const double b = std::sqrt(across * across + along * along + RoundWall::tiny);
-  const double from = low - x[2], to = high - x[2];
+  const auto vertical = static_cast<std::size_t>(vessel.vertical());
+  const double from = low - x[vertical], to = high - x[vertical];
+  if (vessel.dimension == 2) return area_in_disc(r, std::abs(across), -along, wall.offset - margin, from, to);
   if (wall.weight[2] > 0.0) return volume_in_ball(r, b, wall.centre[2] - x[2], wall.offset - margin, from, to);
   if (wall.lean[2] != 0.0) {
     const double rise = -(wall.lean[2] / wall.radial);

@@ -138,6 +138,7 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
 
 // Sections of vessels are convex upwards but for their middle: if both ends of the specimen lie inside, all of it does.
 void Cut::check_round(const std::string& words, double slack) const {
+  if (source_.dimension == 2) return check_rectangle(words, slack);
   if (shape_ == Shape::sphere) {
     const double room = source_.from_sides(middle_);
     if (room + slack >= 0.5 * size_[0]) return;
@@ -161,6 +162,17 @@ void Cut::check_round(const std::string& words, double slack) const {
     refuse_cut(words, fmt::format("it reaches to {:g} m from the axis of the annulus, whose inner wall has a radius of "
                                   "{:g} m; make it smaller or move it",
                                   nearest, source_.core));
+  }
+}
+
+// Vessels in 2D are convex: if its corners lie inside, all of it does.
+void Cut::check_rectangle(const std::string& words, double slack) const {
+  for (const double x : {low_[0], low_[0] + size_[0]}) {
+    for (const double y : {low_[1], low_[1] + size_[1]}) {
+      if (source_.beyond({x, y, 0.0}) <= slack) continue;
+      refuse_cut(words,
+                 fmt::format("its corner ({:g}, {:g}) m is outside the vessel; make it smaller or move it", x, y));
+    }
   }
 }
 

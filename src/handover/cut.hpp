@@ -40,6 +40,7 @@ class Cut {
   enum class Shape { none, box, cylinder, sphere, surface };
   void read(const std::string& words);
   void check_round(const std::string& words, double slack) const;
+  void check_rectangle(const std::string& words, double slack) const;
   [[nodiscard]] double inside(const Vec3& from_centre, double r) const;
   void read_surface(const std::string& words, const std::string& bytes);
   void check_corners(const std::string& words) const;

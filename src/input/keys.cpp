@@ -90,7 +90,7 @@ constexpr Condition annulus{"shape = \"annulus\"",
 constexpr Condition meshed{"shape = \"mesh\"", [](const Input& in) { return in.container.shape == VesselShape::mesh; }};
 constexpr Condition prism{"shape = \"prism\"",
                           [](const Input& in) { return in.container.shape == VesselShape::prism; }};
-constexpr Condition round{"shape = \"cylinder\", \"sphere\" or \"annulus\"", [](const Input& in) {
+constexpr Condition round{"shape = \"cylinder\", \"sphere\", \"annulus\" or \"circle\"", [](const Input& in) {
                             return vessel.holds(in) && !frustum.holds(in) && !prism.holds(in) && !meshed.holds(in);
                           }};
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
@@ -153,7 +153,7 @@ std::vector<Key> container_keys() {
           "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
     word("container.shape", at(container, &Container::shape), "box",
           "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2; \"frustum\": a cone without its tip, "
-          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders; \"prism\": upright over a polygon; \"mesh\": the room inside a closed surface of triangles (doc/vessels.md)."),
+          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders; \"prism\": upright over a polygon; \"mesh\": the room inside a closed surface of triangles; in 2D, \"circle\": filled from above up to a height (doc/vessels.md)."),
     when(boxed, reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
           "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D. Of a cylinder [D, D, H_d] stands for diameter and height.")),
     when(round, real("container.diameter", at(container, &Container::diameter), length, above(0), mandatory, "Diameter inside.")),

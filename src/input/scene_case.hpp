@@ -51,8 +51,9 @@ struct Case {
     for (int axis = 0; axis + 1 < in.container.dimension; ++axis) {
       count *= in.container.size[static_cast<std::size_t>(axis)] / r;
     }
+    if (boxed()) return count;
     const auto& size = in.container.size;
-    return boxed() ? count : count * (container_of(in.container).mean_area() / (size[0] * size[1]));
+    return count * (container_of(in.container).mean_area() / (plane() ? size[0] : size[0] * size[1]));
   }
   [[nodiscard]] bool is(VesselShape shape) const { return in.container.shape == shape; }
   [[nodiscard]] bool boxed() const { return in.container.shape == VesselShape::box; }

@@ -59,10 +59,10 @@ void check_vessel(const Case& scene) {
   check_fit(scene);
   const Container& c = scene.in.container;
   const double diameter = 2.0 * scene.largest();
-  if (scene.is(VesselShape::sphere) && c.height > c.diameter) {
-    scene.refuse("container.height", fmt::format("{:g} m is above container.diameter = {:g} m, the top of the sphere; "
+  if ((scene.is(VesselShape::sphere) || scene.is(VesselShape::circle)) && c.height > c.diameter) {
+    scene.refuse("container.height", fmt::format("{:g} m is above container.diameter = {:g} m, the top of the {}; "
                                                  "lower it",
-                                                 c.height, c.diameter));
+                                                 c.height, c.diameter, word(c.shape)));
   }
   if (scene.is(VesselShape::annulus)) {
     const double gap = 0.5 * (c.diameter - c.inner_diameter);
@@ -79,9 +79,14 @@ void check_vessel(const Case& scene) {
 
 void check_shape(const Input& in, const Document& document) {
   const Case scene{in, document};
-  if (scene.boxed() || !scene.plane()) return;
-  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in 3D; give dimension = 3, or shape = \"box\"",
-                                              word(in.container.shape)));
+  const bool flat = scene.is(VesselShape::circle);
+  if (scene.boxed() || flat == scene.plane()) return;
+  const bool ball = scene.is(VesselShape::circle) || scene.is(VesselShape::sphere);
+  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in {}D; give dimension = {}, or shape = \"{}\"",
+                                              word(in.container.shape), flat ? 2 : 3, flat ? 2 : 3,
+                                              !ball  ? "box"
+                                              : flat ? "sphere"
+                                                     : "circle"));
 }
 
 }  // namespace packmpi::input

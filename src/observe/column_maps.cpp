@@ -89,10 +89,11 @@ double room_in(const geometry::Container& box, const ColumnMaps& maps, std::int6
     const int line = k / side % side, floor = k / (side * side);
     const double x = (ix + (k % side + 0.5) / side) * maps.widths[0];
     const double y = (iy + (line + 0.5) / side) * maps.widths[1];
-    if (box.holds({x, y, (floor + 0.5) / floors * box.height()}, 0.0)) ++inside;
+    if (box.holds(box.at(x, y, (floor + 0.5) / floors * box.height()), 0.0)) ++inside;
   }
   if (inside < points / 8) return 0.0;
-  return maps.widths[0] * maps.widths[1] * inside / points * box.height();
+  const double section = box.dimension == 3 ? maps.widths[0] * maps.widths[1] : maps.widths[0];
+  return section * inside / points * box.height();
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Interior {
     return box.holds(x, margin);
   }
   [[nodiscard]] double volume(int dimension) const {
-    if (!box.is_box()) return box.room_between(margin, low[2], high[2]);
+    if (!box.is_box()) return box.room_between(margin, low[dimension - 1], high[dimension - 1]);
     double v = 1.0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) v *= std::max(0.0, high[a] - low[a]);
     return v;

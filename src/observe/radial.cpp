@@ -17,11 +17,12 @@ constexpr std::size_t most_shells = 1 << 14;
 // Solid volume [m3] of the bulk that is away from a wall by at least each of some distances, which ascend. Collective.
 std::vector<double> solid_away(const Specimen& pack, Surface surface, const std::vector<double>& margins) {
   const geometry::Container& vessel = pack.scene.container;
+  const auto up = static_cast<std::size_t>(vessel.vertical());
   std::vector<std::vector<double>> terms(margins.size());
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
-    if (pack.bulk.low - x[2] >= r || pack.bulk.high - x[2] <= -r) continue;
+    if (pack.bulk.low - x[up] >= r || pack.bulk.high - x[up] <= -r) continue;
     const double reach = vessel.facing(surface, x).distance + r;
     for (std::size_t k = 0; k < margins.size() && margins[k] < reach; ++k) {
       terms[k].push_back(geometry::volume_away_from(vessel, surface, margins[k], x, r, pack.bulk.low, pack.bulk.high));
@@ -34,8 +35,9 @@ std::vector<double> solid_away(const Specimen& pack, Surface surface, const std:
 double farthest(const Specimen& pack, Surface surface) {
   const geometry::Container& vessel = pack.scene.container;
   if (vessel.shape == geometry::Shape::annulus) return vessel.radius() - vessel.core;
-  const Vec3 axis{0.5 * vessel.size[0], 0.5 * vessel.size[1], 0.0};
-  const auto at = [&](double z) { return vessel.facing(surface, {axis[0], axis[1], z}).distance; };
+  const auto at = [&](double z) {
+    return vessel.facing(surface, vessel.at(0.5 * vessel.size[0], 0.5 * vessel.size[1], z)).distance;
+  };
   if (vessel.straight()) return vessel.radius();
   const double low = pack.bulk.low, high = pack.bulk.high;
   const double middle = std::clamp(vessel.radius(), low, high);  // a sphere's
@@ -74,14 +76,14 @@ Profile profile_from(const Specimen& pack, Surface surface) {
 double core_of(const Specimen& pack, double margin) {
   const geometry::Container& vessel = pack.scene.container;
   const double diameter = 2.0 * pack.scene.sizes.mean(), depth = pack.bulk.depth();
+  const double section = vessel.dimension == 3 ? 0.25 * std::numbers::pi * diameter * diameter : diameter;
   const double room = vessel.room_between(margin, pack.bulk.low, pack.bulk.high);
   std::vector<double> margins{margin};
   if (vessel.shape == geometry::Shape::annulus) {
     const double gap = vessel.radius() - vessel.core;
     if (gap - 2.0 * margin < diameter) return 0.0;
     margins.push_back(gap - margin);  // what the inner wall takes
-  } else if (vessel.straight() ? vessel.radius() - margin < 0.5 * diameter
-                               : room < 0.25 * std::numbers::pi * diameter * diameter * depth) {
+  } else if (vessel.straight() ? vessel.radius() - margin < 0.5 * diameter : room < section * depth) {
     return 0.0;
   }
   std::vector<double> volumes = solid_away(pack, Surface::mantle, margins);

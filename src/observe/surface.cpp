@@ -36,7 +36,7 @@ std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, 
       x[axis] =
           (static_cast<double>(at[axis]) + share) * columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
     }
-    if (scene.container.holds({x[0], x[1], height}, scene.sizes.mean())) ++room;
+    if (scene.container.holds(scene.container.at(x[0], x[1], height), scene.sizes.mean())) ++room;
   }
   return room;
 }

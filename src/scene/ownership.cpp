@@ -92,7 +92,8 @@ std::vector<std::int64_t> Ownership::room() const {
     for (int k = 0; k < side * side * floors; ++k) {
       const int line = k / side % side, floor = k / (side * side);
       const double z = (floor + 0.5) / floors * vessel.height();
-      if (vessel.holds({(ix + (k % side + 0.5) / side) * wx, (iy + (line + 0.5) / side) * wy, z}, 0.0)) ++inside;
+      const Vec3 x = vessel.at((ix + (k % side + 0.5) / side) * wx, (iy + (line + 0.5) / side) * wy, z);
+      if (vessel.holds(x, 0.0)) ++inside;
     }
     points.push_back(inside);
   }

@@ -438,6 +438,30 @@ TEST_F(Convert, WallsOfVesselsAreThoseThatACodeHas) {
                        "from the axis of the annulus"));
 }
 
+TEST_F(Convert, WallsOfVesselsIn2DAreThoseThatACodeHas) {
+  const auto pack_in = [&](const std::string& vessel) {
+    std::string scene = scene_text(2, "\"wall\"");
+    const std::size_t begin = scene.find("dimension"), end = scene.find("[particles]");
+    return make_pack_of(100, 2, scene.replace(begin, end - begin, "dimension = 2\n" + vessel));
+  };
+  const auto in_file = [&](const std::string& path, const std::string& format) {
+    return contents(convert_pack(comm_, {.pack = path, .format = format, .force = true}).files.at(1));
+  };
+  const std::string circle = pack_in("shape = \"circle\"\ndiameter = 10.0\nheight = 0.6\n");
+  EXPECT_TRUE(contains(in_file(circle, "lammps"), "region          mantle cylinder z 5 5 5 INF INF side in units box"));
+  EXPECT_TRUE(contains(in_file(circle, "lammps"), "# circle: wall of radius 5 around x = y = 5; y from"));
+  EXPECT_FALSE(contains(in_file(circle, "lammps"), "yplane"));
+  EXPECT_TRUE(contains(in_file(circle, "liggghts"), "zcylinder 5 5 5"));
+  EXPECT_FALSE(contains(in_file(circle, "liggghts"), "yplane"));
+  EXPECT_TRUE(contains(in_file(circle, "yade"), "6: (Vector3(5, 5, 0), 5, 1, Vector3(1, 1, 0), Vector3(0, 0, 0)),"));
+  EXPECT_TRUE(contains(refused({.pack = circle, .format = "pfc"}, ExitCode::bad_input),
+                       "lammps or liggghts or yade, or csv, xyz, vtk or esys, which carry particles alone; or take a "
+                       "rectangle out of it by --cut"));
+  EXPECT_TRUE(
+      contains(refused({.pack = circle, .format = "csv", .cut = "box:length=9,height=0.5"}, ExitCode::bad_input),
+               "its corner (0.5, 0.05) m is outside the vessel"));
+}
+
 TEST_F(Convert, AMeshIsCarriedAsTriangles) {
   std::string text = scene_text(3, "");
   const mesh::Surface surface(testing::box({0, 0, 0}, {1.0, 1.0, 1.5}, 2), "box");

@@ -252,7 +252,8 @@ TEST_F(Estimates, OtherVesselsGetTheirHeight) {
   const std::string frustum = "shape = \"frustum\"\nbottom_diameter = ";
   for (const std::string& shape :
        {frustum + "0.2\ntop_diameter = 0.1\n", std::string("shape = \"sphere\"\ndiameter = 0.2\n"),
-        std::string("shape = \"annulus\"\ndiameter = 0.2\ninner_diameter = 0.08\n")}) {
+        std::string("shape = \"annulus\"\ndiameter = 0.2\ninner_diameter = 0.08\n"),
+        std::string("dimension = 2\nshape = \"circle\"\ndiameter = 0.6\n")}) {
     SCOPED_TRACE(shape);
     const report::Estimate e = found(shape, 2000);
     EXPECT_NEAR(static_cast<double>(e.particles.value), 2000.0, 20.0);

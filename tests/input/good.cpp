@@ -701,6 +701,16 @@ TEST(GoodInput, OtherVesselsHaveLengthsOfTheirOwn) {
     EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective);
 }
 
+TEST(GoodInput, VesselsIn2D) {
+  const Input circle =
+      parse(in_vessel("dimension = 2\nshape = \"circle\"\ndiameter = 0.8\nheight = 0.5"), "a.toml", {});
+  EXPECT_EQ(circle.container.size, (std::vector<double>{0.8, 0.5}));
+  EXPECT_EQ(circle.container.boundary, (std::vector<Boundary>{Boundary::wall}));
+  EXPECT_EQ(circle.layers.region, RegionRule::container);
+  EXPECT_NEAR(container_of(circle.container).volume_between(0.0, 0.8), 0.16 * std::numbers::pi, 1e-15);
+  EXPECT_EQ(parse(circle.effective, "b.toml", {}).effective, circle.effective);
+}
+
 TEST(GoodInput, InsertionAloneAsksForLittle) {
   const std::string text =
       "[container]\nsize = [1.0, 1.0, 0.5]\n[particles]\ndensity = 1000.0\nyoungs_modulus = 1.0e8\n"

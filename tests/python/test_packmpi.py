@@ -146,7 +146,7 @@ class Sections(unittest.TestCase):
     def test_walls_stand_where_they_are(self):
         for words, wanted in (({"shape": "cylinder"}, {0.0, 0.5, 0.25}), ({"shape": "annulus", "inner_diameter": 0.2}, {0.0, 0.15, 0.35, 0.5}),
                               ({"shape": "frustum", "bottom_diameter": 0.3, "top_diameter": 0.5}, {0.0, 0.1, 0.25, 0.4, 0.5}),
-                              ({"shape": "sphere"}, {0.0, 0.25, 0.5})):
+                              ({"shape": "sphere"}, {0.0, 0.25, 0.5}), ({"shape": "circle"}, {0.0, 0.25, 0.5})):
             pack = self.pack(size=[0.5, 0.5, 0.5], **words)
             sheet = render_2d.new_sheet(pack, 300)
             render_2d.put_vessel(sheet, pack)

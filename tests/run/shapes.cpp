@@ -1,5 +1,5 @@
-// Frusta, spheres and annuli: what a particle feels of their walls, and packs in them: one on any number of ranks and
-// after a stop, none of it outside, as dense as it should be.
+// Frusta, spheres and annuli, circles in 2D: what a particle feels of their walls, and packs in them: one on any number
+// of ranks and after a stop, none of it outside, as dense as it should be.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,6 +29,7 @@ input::Input in_vessel(input::Input in, VesselShape shape, double first, double 
   if (shape != VesselShape::frustum) c.diameter = first, c.inner_diameter = second;
   const double widest = std::max(first, second);
   c.size = {widest, widest, height};
+  if (c.dimension == 2) c.size = {widest, height};
   return in;
 }
 
@@ -59,6 +60,9 @@ TEST_F(SlopingWalls, PushAsHertzSays) {
   const input::Input ring = in_vessel(empty, VesselShape::annulus, 1.0, 0.4, 1.0);
   expect_force(ring, {0.5 - 0.2 * 0.6, 0.5 + 0.2 * 0.8, 0.5}, {-0.6, 0.8, 0.0}, depth);
   expect_force(ring, {0.5 - 0.5 * 0.6, 0.5 + 0.5 * 0.8, 0.5}, {0.6, -0.8, 0.0}, depth);
+  const input::Input circle = in_vessel(test::vacuum(2, 1.0, r, 1e-6, 2.0), VesselShape::circle, 1.0, 0.0, 0.9);
+  expect_force(circle, {0.5 + 0.5 * 0.6, 0.5 - 0.5 * 0.8, 0.0}, {-0.6, 0.8, 0.0}, depth);
+  expect_force(circle, {0.5, 0.0, 0.0}, {0.0, 1.0, 0.0}, depth);
 }
 
 // On a cone's wall a sphere slides with g sin(slope), and rolls with 5/7 of it, whether friction remembers or not.
@@ -89,23 +93,24 @@ TEST_F(SlopingWalls, LetASphereSlideAndRollDown) {
   }
 }
 
-// In a sphere as in a cylinder: along its equator, out of which nothing leads.
+// In a sphere as in a cylinder: along its equator, out of which nothing leads. A circle is that equator.
 TEST_F(SlopingWalls, LetASphereRollAroundASphere) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const double speed = 2.0;
-  for (const bool memory : {false, true}) {
-    input::Input in = in_vessel(test::vacuum(3, 1.0, r, 1e-5, speed), VesselShape::sphere, 1.0, 0.0, 1.0);
+  for (const auto& [flat, memory] : {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
+    const VesselShape shape = flat ? VesselShape::circle : VesselShape::sphere;
+    input::Input in = in_vessel(test::vacuum(flat ? 2 : 3, 1.0, r, 1e-5, speed), shape, 1.0, 0.0, 1.0);
     in.contact.friction = in.contact.wall_friction = 0.3;
     if (memory) in.contact.tangential = input::Tangential::mindlin;
     Bench bench(comm, in);
-    bench.place({0.95 + 1e-5, 0.5, 0.5}, r, {0.0, speed, 0.0});
+    bench.place({0.95 + 1e-5, 0.5, flat ? 0.0 : 0.5}, r, {0.0, speed, 0.0});
     bench.start();
     bench.step(static_cast<std::int64_t>(0.5 / bench.dt()));
     const Bench::State at = bench.state(0);
     const double v = std::hypot(at.v[0], at.v[1]);
     EXPECT_NEAR(v, 5.0 / 7.0 * speed, 0.02) << memory;
     EXPECT_NEAR(std::abs(at.omega[2]) * r, v, 0.02) << memory;
-    EXPECT_NEAR(at.x[2], 0.5, 1e-6);
+    EXPECT_NEAR(at.x[2], flat ? 0.0 : 0.5, 1e-6);
     EXPECT_NEAR(std::hypot(at.x[0] - 0.5, at.x[1] - 0.5), 0.45, 1e-3);
   }
 }
@@ -113,15 +118,19 @@ TEST_F(SlopingWalls, LetASphereRollAroundASphere) {
 struct Vessel {
   const char* name;
   const char* keys;
+  bool flat = false;
+  [[nodiscard]] double fraction() const { return flat ? 0.4 : 0.25; }  // of a layer
 };
 void PrintTo(const Vessel& vessel, std::ostream* out) { *out << vessel.name; }
 
-/// Some hundreds of spheres, which remember.
+/// Some hundreds of spheres, or discs, which remember.
 std::string text_of(const Vessel& vessel) {
-  return std::string("fidelity = \"balanced\"\n[container]\n") + vessel.keys +
+  return std::string("fidelity = \"balanced\"\n[container]\n") + (vessel.flat ? "dimension = 2\n" : "") + vessel.keys +
          "[particles]\ndensity = 1000.0\nyoungs_modulus = 5.0e6\npoisson_ratio = 0.25\n"
          "radius = { distribution = \"equal\", value = 0.01 }\n"
-         "[layers]\nthickness = 0.08\nfraction = 0.25\n[jamming]\ngravity = 9.81\n"
+         "[layers]\nthickness = 0.08\nfraction = " +
+         std::to_string(vessel.fraction()) +
+         "\n[jamming]\ngravity = 9.81\n"
          "[contact]\nfriction = 0.3\ndamping_ratio = 0.3\n[checkpoint]\nevery = \"off\"\n";
 }
 
@@ -147,33 +156,37 @@ TEST_P(PackIn, IsOneOnAnyNumberOfRanksAndAfterAStop) {
   EXPECT_EQ(again.spin, first.spin);
   // Inside, all of it; and full.
   const geometry::Container& vessel = scene_.container;
+  const int dimension = vessel.dimension;
   ASSERT_GT(first.id.size(), 150U);
   double solid = 0.0;
   for (std::size_t k = 0; k < first.id.size(); ++k) {
     const Vec3& x = first.position[k];
     EXPECT_LT(vessel.beyond(x), -0.97 * first.radius[k]) << k;
-    solid += geometry::volume_below(3, first.radius[k], x[2], vessel.height());
+    const double height = x[static_cast<std::size_t>(vessel.vertical())];
+    solid += geometry::volume_below(dimension, first.radius[k], height, vessel.height());
   }
   if (world_.rank() != 0) return;
   EXPECT_EQ(record_.audit.outside, 0);
   EXPECT_NEAR(record_.phi, solid / vessel.volume_between(0.0, vessel.height()), 1e-12);
-  EXPECT_GT(record_.phi_bulk, 0.48);  // few diameters wide
-  EXPECT_LT(record_.phi_bulk, 0.62);
+  EXPECT_GT(record_.phi_bulk, dimension == 3 ? 0.48 : 0.74);  // few diameters wide
+  EXPECT_LT(record_.phi_bulk, dimension == 3 ? 0.62 : 0.86);
   for (const report::LayerRow& row : record_.layers) {  // each layer's region is the shape's
     const double room = vessel.volume_between(row.region_bottom, std::min(row.region_bottom + 0.08, 9.0));
     if (vessel.closes()) continue;
-    EXPECT_NEAR(static_cast<double>(row.inserted) * geometry::volume(3, 0.01), 0.25 * room, geometry::volume(3, 0.01));
+    const double one = geometry::volume(dimension, 0.01);
+    EXPECT_NEAR(static_cast<double>(row.inserted) * one, GetParam().fraction() * room, one);
   }
   EXPECT_NEAR(record_.rest.support, 1.0, 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, PackIn,
-    ::testing::Values(
-        Vessel{"hopper", "shape = \"frustum\"\nbottom_diameter = 0.06\ntop_diameter = 0.16\nheight = 0.12\n"},
-        Vessel{"heap", "shape = \"frustum\"\nbottom_diameter = 0.18\ntop_diameter = 0.1\nheight = 0.1\n"},
-        Vessel{"sphere", "shape = \"sphere\"\ndiameter = 0.16\nheight = 0.13\n"},
-        Vessel{"annulus", "shape = \"annulus\"\ndiameter = 0.16\ninner_diameter = 0.06\nheight = 0.08\n"}));
+    ::testing::Values(Vessel{"hopper",
+                             "shape = \"frustum\"\nbottom_diameter = 0.06\ntop_diameter = 0.16\nheight = 0.12\n"},
+                      Vessel{"heap", "shape = \"frustum\"\nbottom_diameter = 0.18\ntop_diameter = 0.1\nheight = 0.1\n"},
+                      Vessel{"sphere", "shape = \"sphere\"\ndiameter = 0.16\nheight = 0.13\n"},
+                      Vessel{"annulus", "shape = \"annulus\"\ndiameter = 0.16\ninner_diameter = 0.06\nheight = 0.08\n"},
+                      Vessel{"circle", "shape = \"circle\"\ndiameter = 0.32\nheight = 0.26\n", true}));
 
 }  // namespace
 }  // namespace packmpi::run

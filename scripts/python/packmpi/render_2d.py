@@ -69,7 +69,7 @@ def put_box(sheet: Sheet, pack: Pack) -> None:
 
 
 def put_vessel(sheet: Sheet, pack: Pack) -> None:
-    """The walls of a vessel where the section through its middle cuts them."""
+    """The walls of a vessel, in 3D where the section through its middle cuts them."""
     middle = 0.5 * float(pack.size[0])
     if pack.shape == "mesh":
         corners, triangles = vessel.mesh(pack)
@@ -80,7 +80,7 @@ def put_vessel(sheet: Sheet, pack: Pack) -> None:
     floor = [float(line[0, 1]) for line in walls] + [0.0]   # of an annulus from the outer wall to the inner one, else to the axis
     for side in (-1.0, 1.0):
         lines = [(middle + side * line[:, 1], line[:, 0]) for line in walls]
-        if pack.shape != "sphere":
+        if pack.shape not in ("sphere", "circle"):
             lines.append((middle + side * np.array(floor[:2]), np.zeros(2)))
         for x, z in lines:
             sheet.axes.plot(x, z, color=INK, linewidth=1.6, clip_on=False, zorder=4)
@@ -119,7 +119,7 @@ def draw_2d(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: in
     points = sheet.points * 2.0 * float(pack.radius.mean()) if pack.count else 1.0  # a mean diameter in points
     put_circles(sheet, pack.position[:, :2], pack.radius, colouring.rgba(), min(0.6, 0.04 * points))
     note = f";  lines: contact forces, mean {chain_lines(pack, sheet.axes, 0.1 * points):.2g} N" if show else ""
-    put_box(sheet, pack)
+    (put_box if pack.shape == "box" else put_vessel)(sheet, pack)
     put_heights(sheet, pack)
     finish(sheet, pack, colouring, note, path)
 

@@ -1,4 +1,4 @@
-"""The walls of vessels: bodies of revolution, and meshes."""
+"""The walls of vessels: bodies of revolution, circles in 2D, and meshes."""
 import tomllib
 
 import numpy as np
@@ -9,7 +9,7 @@ from .pack import Floats, Integers, Pack
 def outlines(pack: Pack, top: float) -> list[Floats]:
     """(height, radius) along each round wall of a pack's vessel from below up to `top` [m], whose axis is at x = y = size[0] / 2."""
     radius, target = 0.5 * pack.size[0], pack.size[-1]
-    if pack.shape == "sphere":
+    if pack.shape in ("sphere", "circle"):
         angles = np.linspace(-0.5 * np.pi, np.arcsin(min(1.0, top / radius - 1.0)), 73)
         return [np.column_stack([radius * (1.0 + np.sin(angles)), radius * np.cos(angles)])]
     if pack.shape == "frustum":
@@ -75,8 +75,8 @@ def words(pack: Pack, scale: float, unit: str) -> str:
         return f"a frustum, {low:g} to {high:g} x {height:g} {unit}"
     if pack.shape == "mesh":
         return f"a mesh, {width:g} x {scale * pack.size[1]:g} x {height:g} {unit}"
-    if pack.shape == "sphere":
-        return f"a sphere of {width:g} {unit}, up to {height:g} {unit}"
+    if pack.shape in ("sphere", "circle"):
+        return f"a {pack.shape} of {width:g} {unit}, up to {height:g} {unit}"
     if pack.shape == "annulus":
         return f"an annulus, {scale * pack.summary['inner_diameter']:g} to {width:g} x {height:g} {unit}"
     return f"a cylinder, {width:g} x {height:g} {unit}"

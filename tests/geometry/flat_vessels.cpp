@@ -1,0 +1,148 @@
+// Vessels in 2D: rooms and cut discs by integrals of another kind, places drawn.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "geometry/container.hpp"
+#include "geometry/round_volume.hpp"
+#include "geometry/volume.hpp"
+
+namespace packmpi::geometry {
+namespace {
+
+Container circle() {
+  Container made;
+  made.dimension = 2;
+  made.size = {2.0, 1.6, 0.0};
+  made.shape = Shape::sphere;
+  return made;
+}
+
+/// Area of where `room` is positive, by lines along z whose ends are found by halving.
+double area_by_lines(const std::function<double(double, double)>& room, double from, double to, double low, double high,
+                     int lines) {
+  double sum = 0.0;
+  for (int k = 0; k < lines; ++k) {
+    const double x = from + (to - from) * (k + 0.5) / lines;
+    constexpr int looks = 64;
+    const auto z_of = [&](double n) { return low + (high - low) * n / looks; };
+    for (int n = 0; n < looks; ++n) {
+      double a = z_of(n), b = z_of(n + 1);
+      const bool first = room(x, a) > 0.0, second = room(x, b) > 0.0;
+      if (first && second) sum += b - a;
+      if (first == second) continue;
+      const double end = first ? a : b;
+      for (int turn = 0; turn < 50; ++turn) {
+        const double middle = 0.5 * (a + b);
+        (room(x, middle) > 0.0) == first ? a = middle : b = middle;
+      }
+      sum += std::abs(a - end);
+    }
+  }
+  return sum * (to - from) / lines;
+}
+
+TEST(Circle, HasOneWallAroundIt) {
+  const Container v = circle();
+  EXPECT_TRUE(v.has(Surface::mantle) && v.closes() && !v.straight());
+  for (std::size_t wall = 0; wall < most_surfaces; ++wall)
+    EXPECT_EQ(v.has(static_cast<Surface>(wall)), wall == most_planes);
+  const Facing facing = v.facing(Surface::mantle, {1.3, 0.6, 0.0});
+  EXPECT_NEAR(facing.distance, 0.5, 1e-15);
+  EXPECT_NEAR(facing.normal[0], 0.6, 1e-15);
+  EXPECT_NEAR(facing.normal[1], -0.8, 1e-15);
+  EXPECT_EQ(facing.normal[2], 0.0);
+  EXPECT_NEAR(v.beyond({1.0, -0.25, 0.0}), 0.25, 1e-15);
+  EXPECT_TRUE(v.holds({1.3, 0.6, 0.0}, 0.499) && !v.holds({1.3, 0.6, 0.0}, 0.501));
+}
+
+TEST(Circle, ItsRoomIsThatOfSegments) {
+  const Container v = circle();
+  const auto room = [&](double margin) {
+    return [&v, margin](double x, double z) { return v.from_sides({x, z, 0.0}) - margin; };
+  };
+  EXPECT_NEAR(v.volume_between(0.0, 2.0), std::numbers::pi, 1e-15);
+  EXPECT_NEAR(v.volume_between(0.0, 1.0), 0.5 * std::numbers::pi, 1e-15);
+  EXPECT_NEAR(v.area_at(0.4), 1.6, 1e-15);  // a chord
+  EXPECT_NEAR(v.wall_area(2.0), 2.0 * std::numbers::pi, 1e-14);
+  EXPECT_NEAR(v.wall_area(0.5), 2.0 / 3.0 * std::numbers::pi, 1e-14);  // 60 degrees to both sides of its lowest point
+  for (const double margin : {0.0, 0.13}) {
+    const double area = area_by_lines(room(margin), 0.0, 2.0, 0.3, 1.4, 4000);
+    EXPECT_NEAR(v.room_between(margin, 0.3, 1.4), area, 1e-5);
+  }
+  const double slab = area_by_lines(room(0.0), 0.2, 0.7, 0.3, 1.4, 4000);
+  EXPECT_NEAR(v.slab(0, 0.2, 0.7, 0.3, 1.4), slab, 1e-6);
+  EXPECT_NEAR(v.slab(0, 0.0, 2.0, 0.3, 1.4), v.volume_between(0.3, 1.4), 1e-14);
+  for (const double z : {0.1, 0.8, 1.5}) EXPECT_NEAR(v.level(v.volume_between(0.0, z)), z, 1e-12);
+  EXPECT_NEAR(v.level(99.0), 2.0, 1e-15);
+}
+
+/// Places for discs of radius 0.1 in the layer between two heights.
+void expect_even_places(const Container& v, double low, double high) {
+  std::mt19937_64 engine(5);
+  const auto dice = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  const double r = 0.1;
+  constexpr int draws = 40000;
+  std::array<int, 4> counts{};  // left and right of x = 0.8, below and above z = 0.9
+  for (int k = 0; k < draws; ++k) {
+    const Vec3 x = v.draw({dice(), dice(), dice()}, r, low, high - low);
+    ASSERT_GE(v.from_sides(x), r - 1e-12);
+    ASSERT_TRUE(x[1] >= low + r - 1e-15 && x[1] <= high - r + 1e-15 && x[2] == 0.0);
+    ++counts.at((x[0] < 0.8 ? 0U : 1U) + (x[1] < 0.9 ? 0U : 2U));
+  }
+  const double all = v.room_between(r, low + r, high - r);
+  const auto share = [&](double from, double to, double a, double b) {
+    const auto room = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - r; };
+    return area_by_lines(room, from, to, a, b, 2000) / all;
+  };
+  const double bottom = low + r, top = high - r;
+  const std::array<double, 4> wanted{share(0.0, 0.8, bottom, 0.9), share(0.8, 2.0, bottom, 0.9),
+                                     share(0.0, 0.8, 0.9, top), share(0.8, 2.0, 0.9, top)};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double sd = std::sqrt(draws * wanted[k] * (1.0 - wanted[k]));
+    EXPECT_NEAR(counts[k], draws * wanted[k], 4.5 * sd) << k;
+  }
+}
+
+TEST(Circle, PlacesAreDrawnEvenly) { expect_even_places(circle(), 0.2, 1.5); }
+
+/// What two discs have in common, by the textbook.
+double lens_of(double s, double t, double b) {
+  if (b >= s + t) return 0.0;
+  if (b <= std::abs(s - t)) return std::numbers::pi * std::min(s, t) * std::min(s, t);
+  const double first = std::acos((b * b + s * s - t * t) / (2.0 * b * s));
+  const double second = std::acos((b * b + t * t - s * s) / (2.0 * b * t));
+  return s * s * (first - 0.5 * std::sin(2.0 * first)) + t * t * (second - 0.5 * std::sin(2.0 * second));
+}
+
+TEST(Circle, CutsDiscsToABillionth) {
+  const Container v = circle();
+  std::mt19937_64 engine(11);
+  const auto dice = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
+  };
+  int cut = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double r = dice(0.01, 0.4), margin = dice(0.0, 0.6);
+    const Vec3 x{dice(0.1, 1.9), dice(0.1, 1.9), 0.0};
+    const double b = std::hypot(x[0] - 1.0, x[1] - 1.0), inside = lens_of(r, 1.0 - margin, b);
+    const auto away = [&](double low, double high) {
+      return volume_away_from(v, Surface::mantle, margin, x, r, low, high);
+    };
+    EXPECT_NEAR(away(-9.0, 9.0), inside, 1e-9 * r * r) << k;
+    const double between = x[1] + dice(-r, r);
+    EXPECT_NEAR(away(-9.0, between) + away(between, 9.0), inside, 1e-9 * r * r) << k;
+    if (inside > 0.0 && inside < 0.99 * volume(2, r)) ++cut;
+    if (inside > 0.999999 * volume(2, r)) {
+      EXPECT_NEAR(away(-9.0, between), volume_below(2, r, x[1], between), 1e-9 * r * r);
+    }
+  }
+  EXPECT_GT(cut, 40);
+}
+
+}  // namespace
+}  // namespace packmpi::geometry
