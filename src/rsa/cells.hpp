@@ -101,7 +101,28 @@ class Bins {
     return any(sphere, [](std::int32_t) { return true; });
   }
 
+  /// Fetches what any() of this sphere will ask for: the cells, and once they are there the first sphere of each.
+  void fetch_cells(const Sphere& sphere) const noexcept {
+    in_rows(sphere, [](const std::int32_t* row) { __builtin_prefetch(row); });
+  }
+  void fetch_spheres(const Sphere& sphere) const noexcept {
+    in_rows(sphere, [&](const std::int32_t* row) {
+      for (const std::int32_t head : std::span(row, 3)) {
+        if (head != none) __builtin_prefetch(&nodes_[static_cast<std::size_t>(head)]);
+      }
+    });
+  }
+
  private:
+  template <class Row>
+  void in_rows(const Sphere& sphere, Row&& row) const noexcept {
+    for (std::size_t level = 0; level <= grids_->level(sphere.radius); ++level) {
+      if (used_[level] == 0) continue;
+      const CellGrid& grid = grids_->grid(level);
+      const CellGrid::Rows rows = grid.rows(sphere.centre);
+      for (const std::size_t first : std::span(rows).first(grid.row_count())) row(heads_[level].data() + first);
+    }
+  }
   template <class Counts>
   [[nodiscard]] bool any_in(std::size_t level, const Sphere& sphere, Counts&& counts) const {
     const CellGrid& grid = grids_->grid(level);

@@ -6,6 +6,11 @@
 #include <stdexcept>
 
 namespace packmpi::rsa {
+namespace {
+
+constexpr std::size_t ahead = 8;  // trials: what they will ask for is fetched, as they come in no order of place
+
+}  // namespace
 
 Conflicts::Outcome Conflicts::resolve(std::span<const Trial> trials, const Volley& volley) {
   own_ = trials.size();
@@ -80,7 +85,13 @@ void Conflicts::take_in(std::vector<Announcement> foreign) {
 // All own open trials in order, as far as what is known allows.
 void Conflicts::decide(bool first) {
   std::size_t left = 0;
-  for (const std::int32_t k : open_) {
+  const auto sphere = [&](std::size_t at) -> const Sphere& {
+    return trials_[static_cast<std::size_t>(open_[at])].sphere;
+  };
+  for (std::size_t at = 0; at < open_.size(); ++at) {
+    if (at + 2 * ahead < open_.size()) placed_->fetch_cells(sphere(at + 2 * ahead));
+    if (at + ahead < open_.size()) placed_->fetch_spheres(sphere(at + ahead));
+    const std::int32_t k = open_[at];
     const Trial& trial = trials_[static_cast<std::size_t>(k)];
     const Verdict verdict = ruling(trial);
     if (verdict == Verdict::open) {
@@ -90,7 +101,7 @@ void Conflicts::decide(bool first) {
     }
     settle(k, verdict);
     if (verdict == Verdict::rejected) continue;
-    placed_->add(trial.sphere, 0);
+    placed_->add(trial.sphere);
     ++outcome_.kept;
     outcome_.thrown += trial.attempt - first_attempt_ + 1;
   }
@@ -148,7 +159,7 @@ void Conflicts::hear() {
     const auto found = std::ranges::lower_bound(foreign, Turn{news.attempt, news.particle}, {}, turn);
     const auto k = static_cast<std::size_t>(found - foreign.begin());
     verdicts_[own_ + k] = news.kept != 0 ? Verdict::kept : Verdict::rejected;
-    if (news.kept != 0 && near_[k] != 0) placed_->add(found->sphere, 0);
+    if (news.kept != 0 && near_[k] != 0) placed_->add(found->sphere);
   }
 }
 

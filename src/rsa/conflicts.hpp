@@ -8,6 +8,7 @@
 #include "rsa/border.hpp"
 #include "rsa/cells.hpp"
 #include "rsa/mail.hpp"
+#include "rsa/placed.hpp"
 #include "rsa/sampler.hpp"
 #include "rsa/sphere.hpp"
 
@@ -25,7 +26,7 @@ class Conflicts {
  public:
   /// `placed` holds the spheres placed so far, foreign ones near the border too, and is extended by resolve().
   Conflicts(const comm::Comm& comm, const CellGrids& grid, const Metric& metric, const Border& border,
-            const Sampler& sampler, Bins& placed)
+            const Sampler& sampler, Placed& placed)
       : comm_(&comm), border_(&border), sampler_(&sampler), placed_(&placed), undecided_(grid, metric) {}
 
   /// Totals over all ranks.
@@ -68,7 +69,7 @@ class Conflicts {
   const comm::Comm* comm_;
   const Border* border_;
   const Sampler* sampler_;
-  Bins* placed_;
+  Placed* placed_;
   Bins undecided_;                         // near foreign trials, and own ones that wait; tags are indices into trials_
   std::vector<Trial> trials_;              // own, then foreign ones; each part in order of turn()
   std::vector<Verdict> verdicts_;          // of trials_

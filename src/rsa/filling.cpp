@@ -1,7 +1,6 @@
 #include "rsa/filling.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "geometry/volume.hpp"
@@ -17,7 +16,7 @@ Filling::Filling(const comm::Comm& comm, const scene::Scene& scene, const scene:
       sampler_(scene, ownership, region),
       grid_(scene, ownership, region, asked),
       border_(ownership, comm.rank(), scene.sizes.largest() + scene.in.layers.gap),
-      placed_(grid_, Metric(scene.container, scene.in.layers.gap)),
+      placed_(Bins(grid_, Metric(scene.container, scene.in.layers.gap)), Excluded(scene, ownership, region, asked)),
       conflicts_(comm, grid_, Metric(scene.container, scene.in.layers.gap), border_, sampler_, placed_) {
   const auto bound = [&](std::int64_t rank) {
     return asked / comm.size() * rank + std::min(rank, asked % comm.size());
@@ -42,9 +41,10 @@ Conflicts::Outcome Filling::fire(const Volley& volley, particles::Store& store) 
   const std::vector<Trial> trials = make_trials(volley);
   waiting_.clear();
   free_.clear();
-  for (const Trial& trial : trials) {
-    const bool nowhere = std::isnan(trial.sphere.centre[2]);
-    if (!nowhere && !placed_.overlaps(trial.sphere)) {
+  placed_.find_free(trials, is_free_);
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const Trial& trial = trials[k];
+    if (is_free_[k] != 0) {
       free_.push_back(trial);
     } else if (trial.attempt == volley.last()) {  // the particle goes on from the rank where its last trial fell
       wait(trial);

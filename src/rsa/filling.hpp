@@ -11,6 +11,7 @@
 #include "rsa/conflicts.hpp"
 #include "rsa/insert.hpp"
 #include "rsa/mail.hpp"
+#include "rsa/placed.hpp"
 #include "rsa/sampler.hpp"
 
 namespace packmpi::rsa {
@@ -48,11 +49,12 @@ class Filling {
   Sampler sampler_;
   CellGrids grid_;
   Border border_;
-  Bins placed_;  // of this layer, in this rank's columns and near them
+  Placed placed_;  // of this layer, in this rank's columns and near them
   Conflicts conflicts_;
   Mailbox<Trial> mail_;
   std::array<std::vector<Waiting>, size_classes> share_;  // the classes to come
   std::vector<Waiting> waiting_;                          // of the present class
+  std::vector<char> is_free_;                             // of each trial of a volley
   std::vector<Trial> free_;      // trials that overlap none placed before their volley, in order
   std::vector<double> volumes_;  // of the spheres placed here
 };

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "geometry/volume.hpp"
+#include "rsa/excluded.hpp"
 #include "support/oracle_rsa.hpp"
 #include "support/rsa_scenes.hpp"
 
@@ -290,6 +291,41 @@ TEST(GiveUp, LayerThinnerThanAParticle) {
   const scene::Scene scene = rsa_scene(3, {1.0, 0.8, 1.0}, walls, equal_radius(0.04), 0.3, 12);
   EXPECT_THAT(complaint(scene, {0, 0.0, 0.079, 0}, Decomposition::slab),
               testing::HasSubstr("layers.thickness = 0.079 m"));
+}
+
+// Whatever the voxels, ranks and sizes: where the map says that there is no room, the smallest sphere overlaps one that
+// is placed; and of a dense layer it knows most of that.
+TEST(Excluded, SaysOnlyWhatIsSo) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const int dimension : {2, 3}) {
+    for (const auto& radius : {equal_radius(0.02), uniform_radius(0.01, 0.03)}) {
+      const scene::Scene scene = rsa_scene(dimension, {1.0, dimension == 3 ? 0.5 : 0.4, 0.3}, {true, false}, radius,
+                                           dimension == 3 ? 0.28 : 0.45, 100000);
+      const auto ownership = try_ownership(comm, test::rsa_grid(scene), Decomposition::slab);
+      if (!ownership) continue;
+      const rsa::LayerRegion region{0, 0.1, 0.25, 0};
+      particles::Store store(scene.features.layout());
+      const std::int64_t asked = rsa::insert(comm, scene, *ownership, region, store).inserted;
+      rsa::Excluded excluded(scene, *ownership, region, asked);
+      const rsa::Metric metric(scene.container);
+      std::vector<rsa::Sphere> placed;
+      for (LocalIndex i = 0; i < store.owned(); ++i) {
+        placed.push_back({store.position(i), store.radius(i)});
+        excluded.add(placed.back());
+      }
+      int taken = 0, known = 0;
+      for (std::uint64_t k = 0; k < 20000; ++k) {
+        const rsa::Sphere trial{rsa::trial(scene, region, k, scene.sizes.smallest(), 7), scene.sizes.smallest()};
+        if (ownership->owner(ownership->grid().column(trial.centre)) != comm.rank()) continue;
+        const bool overlaps = std::ranges::any_of(placed, [&](const auto& s) { return metric.overlap(trial, s); });
+        taken += overlaps ? 1 : 0;
+        if (!excluded.holds(trial.centre)) continue;
+        ++known;
+        EXPECT_TRUE(overlaps) << dimension << "D, trial " << k;
+      }
+      EXPECT_GT(known, 0.4 * taken) << dimension << "D";
+    }
+  }
 }
 
 }  // namespace
