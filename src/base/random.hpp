@@ -8,7 +8,7 @@
 namespace packmpi::random {
 
 /// What a draw is for; each purpose is an independent stream. Values are below 2^8.
-enum class Purpose : std::uint32_t { radius = 1, trial = 2, test = 3 };
+enum class Purpose : std::uint32_t { radius = 1, trial = 2, test = 3, measure = 4 };
 
 /// The name of a draw. Two names within the bounds below never share a Philox counter.
 struct Name {

@@ -48,7 +48,9 @@ struct Specimen {
 /// Solid fraction of the bulk of a round vessel by the distance from its wall, in shells a twentieth of a mean diameter
 /// thick (the last, around the axis, what is left), of an annulus from the inner one, too; and of all that is at least
 /// `from_walls` [m] away from its side walls, three mean diameters. Spheres are cut by the shells and by the bulk's
-/// planes, to 1e-9 of a radius cubed; discs of 2D likewise. Collective. Cost: about 0.1 ms a particle.
+/// planes, to 1e-9 of a radius cubed; discs of 2D likewise. In a mesh by the distance from the nearest place of the
+/// surface, floor and lid included, and by points (observe/radial_points.hpp). Collective. Cost: about 0.1 ms a
+/// particle.
 struct RadialProfile {
   Profile profile;     ///< empty: of a box, or of no bulk
   Profile from_inner;  ///< of an annulus

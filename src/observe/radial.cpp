@@ -4,14 +4,13 @@
 
 #include "geometry/round_volume.hpp"
 #include "observe/analysis.hpp"
+#include "observe/radial_points.hpp"
 
 namespace packmpi::observe {
 namespace {
 
 using geometry::Surface;
 
-constexpr double shells_a_diameter = 20.0;
-constexpr double core_in_diameters = 3.0;
 constexpr std::size_t most_shells = 1 << 14;
 
 // Solid volume [m3] of the bulk that is away from a wall by at least each of some distances, which ascend. Collective.
@@ -95,7 +94,8 @@ double core_of(const Specimen& pack, double margin) {
 
 RadialProfile radial_profile(const Specimen& pack) {
   RadialProfile result;
-  if (pack.scene.container.is_box() || pack.scene.container.is_mesh() || !(pack.bulk.depth() > 0.0)) return result;
+  if (pack.scene.container.is_box() || !(pack.bulk.depth() > 0.0)) return result;
+  if (pack.scene.container.is_mesh()) return radial_by_points(pack);
   result.profile = profile_from(pack, Surface::mantle);
   if (pack.scene.container.has(Surface::inner)) result.from_inner = profile_from(pack, Surface::inner);
   result.from_walls = core_in_diameters * 2.0 * pack.scene.sizes.mean();

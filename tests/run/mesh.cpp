@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
 
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
 #include "mesh/shapes.hpp"
+#include "run/analyze.hpp"
 #include "start/fit.hpp"
 #include "support/packs_on_ranks.hpp"
 
@@ -127,6 +131,49 @@ TEST_F(PackInMesh, ABoxOfTrianglesIsTheBox) {
       for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a.position[k][c], b.position[k][c], 1e-9);
     }
   }
+}
+
+/// Against points of another source, whose distance from the six sides is known.
+TEST_F(PackInMesh, ItsSolidFractionIsToldByTheDistanceFromTheWalls) {
+  const Vec3 size{0.16, 0.12, 0.2};
+  ASSERT_EQ(run(scene_of(text_of(testing::box({0, 0, 0}, size, 2), 0.1, "[rest]\nwait = 0\n")), world_.size(), 0, ""),
+            ExitCode::done)
+      << words_;
+  (void)analyze(world_, folder_ + "/shape.hdf");
+  world_.barrier();
+  std::ifstream file(folder_ + "/shape.analysis.json");
+  const nlohmann::json found = nlohmann::json::parse(file)["radial_profile"];
+  const std::vector<double> values = found["from_wall"]["values"];
+  const double width = found["from_wall"]["width"];
+  ASSERT_GT(values.size(), 40U);
+  EXPECT_EQ(found["from_wall"]["from"], 0.0);
+  EXPECT_NEAR(width, 0.001, 1e-12);
+  const pack::PackRows pack = rows();
+  const auto& bulk = record_.bulk;
+  std::vector<int> room(values.size(), 0), solid(values.size(), 0);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u;
+  for (int k = 0; k < 60000; ++k) {
+    const Vec3 x{u(random) * size[0], u(random) * size[1], bulk.low + u(random) * (bulk.high - bulk.low)};
+    const double away = std::min({x[0], size[0] - x[0], x[1], size[1] - x[1], x[2], size[2] - x[2]});
+    const auto shell = static_cast<std::size_t>(away / width);
+    if (shell >= values.size()) continue;
+    ++room[shell];
+    for (std::size_t i = 0; i < pack.id.size(); ++i) {
+      const Vec3& c = pack.position[i];
+      solid[shell] += std::hypot(x[0] - c[0], x[1] - c[1], x[2] - c[2]) < pack.radius[i] ? 1 : 0;
+    }
+  }
+  double most = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (room[k] < 100) continue;
+    const double share = static_cast<double>(solid[k]) / room[k];
+    const double error = std::sqrt(std::max(share * (1.0 - share), 0.05) / room[k]);
+    EXPECT_NEAR(values[k], share, 4.5 * error) << "shell " << k;
+    most = std::max(most, values[k]);
+  }
+  EXPECT_GT(most, 0.6) << "a layer of spheres stands at the walls";
+  EXPECT_LT(values[0], 0.25);
 }
 
 /// Obstacles in a cylinder: the vessel has facets then, and nothing is in a ball, in a bar, or outside.
