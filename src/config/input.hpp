@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "geometry/polygon.hpp"
 #include "mesh/surface.hpp"
 
 namespace packmpi::input {
 
-enum class VesselShape { box, cylinder, frustum, sphere, annulus, prism, mesh, circle };
+enum class VesselShape { box, cylinder, frustum, sphere, annulus, prism, mesh, circle, trapezium, polygon };
 enum class Boundary { wall, periodic };
 enum class SizeDistribution {
   equal,
@@ -49,10 +50,12 @@ struct Container {
   double diameter = 0.0, height = 0.0;  ///< [m] inside, and the desired height H_d: of vessels that are no box
   double bottom_diameter = 0.0, top_diameter = 0.0;  ///< [m] of a frustum, at the floor and at H_d
   double inner_diameter = 0.0;                       ///< [m] of an annulus
-  Curve polygon;           ///< [m] of a prism, the corners of its section; it is a mesh once it has been read
+  double bottom_width = 0.0, top_width = 0.0;        ///< [m] of a trapezium, at the floor and at H_d
+  Curve polygon;           ///< [m] corners of a polygon, or of the section of a prism, which is a mesh once it is read
   std::string file, unit;  ///< of a mesh: STL or OBJ beside the scene, and its unit; "" and "m" once it has been read
   std::string surface;     ///< of a mesh: the lines of an OBJ file [m]; what the file has, once it has been read
-  std::shared_ptr<const mesh::Surface> mesh;  ///< made of them, once they have been read
+  std::shared_ptr<const mesh::Surface> mesh;       ///< made of them, once they have been read
+  std::shared_ptr<const geometry::Polygon> sides;  ///< of a trapezium or polygon, once it has been read
   std::vector<double> size;        ///< [m] lateral extents, then the desired height H_d; `dimension` numbers. Of other
                                    ///< vessels than a box: what is around them, once the scene has been read
   std::vector<Boundary> boundary;  ///< one per lateral axis; of other vessels than a box: walls

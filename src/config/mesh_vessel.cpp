@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "config/obstacles.hpp"
+#include "config/vessel.hpp"
 #include "mesh/bodies.hpp"
 #include "mesh/file.hpp"
 #include "mesh/vectors.hpp"
@@ -29,32 +30,11 @@ Vec3 move_to_origin(std::vector<mesh::Corners>& triangles, double unit) {
   return {-low[0], -low[1], -low[2]};
 }
 
-/// Is every corner to the left of every side but its ends? Only of a convex polygon that goes round once,
-/// anticlockwise.
-bool is_convex(const Curve& corners) {
-  const std::size_t n = corners.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto &a = corners[k], &b = corners[(k + 1) % n];
-    for (std::size_t j = 2; j < n; ++j) {
-      const auto& c = corners[(k + j) % n];
-      if (!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0)) return false;
-    }
-  }
-  return n >= 3;
-}
-
 /// A prism becomes the mesh that it is.
 void take_prism(const document::Document& document, Container& c) {
   constexpr std::string_view key = "container.polygon";
-  constexpr std::size_t most = 1000;
-  Curve corners = c.polygon;
-  if (corners.size() > 2 && corners.size() <= most && !is_convex(corners)) std::ranges::reverse(corners);
-  if (corners.size() > most || !is_convex(corners)) {
-    document::fail(
-        document.place(key), key,
-        "is no convex polygon of 3 to 1000 corners that go round once, each of which turns; draw other rooms "
-        "in a CAD program, for shape = \"mesh\"");
-  }
+  const Curve corners =
+      corners_of(document, c.polygon, 1000, "draw other rooms in a CAD program, for shape = \"mesh\"");
   std::vector<mesh::Corners> triangles = mesh::prism_over(corners, c.height);
   (void)move_to_origin(triangles, 1.0);
   try {

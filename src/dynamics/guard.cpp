@@ -100,8 +100,10 @@ std::string neighbors_of(const Inspected& now, LocalIndex i) {
     const double depth = walls.particle[w] == i ? penetration_of(now, i, w) : 0.0;
     if (!(depth > 0.0)) continue;
     const auto number = static_cast<std::size_t>(walls.wall[w]);
-    touching.emplace_back(
-        -depth, number < names.size() ? names.at(number) : fmt::format("part {} of the mesh", number - names.size()));
+    touching.emplace_back(-depth, number < names.size()
+                                      ? names.at(number)
+                                      : fmt::format("part {} of the {}", number - names.size(),
+                                                    now.scene.container.is_mesh() ? "mesh" : "polygon"));
   }
   if (touching.empty()) return "touches nothing";
   std::ranges::sort(touching);

@@ -126,7 +126,8 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
                               Carried{"liggghts", {Shape::annulus, Shape::mesh}},
                               Carried{"yade", {Shape::frustum, Shape::sphere, Shape::annulus, Shape::mesh}}};
   if (vessel.dimension == 2) {  // a circle is an upright cylinder there
-    able = {Carried{"lammps", {Shape::sphere}}, Carried{"liggghts", {Shape::sphere}}, Carried{"yade", {Shape::sphere}}};
+    able = {Carried{"lammps", {Shape::sphere, Shape::polygon}}, Carried{"liggghts", {Shape::sphere}},
+            Carried{"yade", {Shape::sphere, Shape::polygon}}};
   }
   constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
   const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;

@@ -46,7 +46,7 @@ std::string walls(const Specimen& s) {
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
   const std::string law = contact(s, share, in.contact.wall_friction, runs_with_walls(s));
   std::string text;
-  if (s.round()) {
+  if (s.round() && !s.scene.container.is_polygon()) {
     text =
         "# the law of a curved wall is there that of spheres on its curvature: overlaps differ by a share of r / R\n";
   }

@@ -90,10 +90,29 @@ std::string boundary_words(const Specimen& s) {
   return words;
 }
 
+namespace {
+
+/// The sides of a polygon but its floor; a plane's normal looks into the room.
+std::vector<Region> side_regions(const geometry::Container& vessel) {
+  std::vector<Region> regions;
+  vessel.near_walls({}, HUGE_VAL, [&](geometry::Surface wall, double) {
+    if (wall == geometry::Surface::floor) return;
+    const auto [distance, normal, velocity] = vessel.facing(wall, {});
+    const std::string name = fmt::format("side{}", regions.size() + 1);
+    regions.push_back(
+        {name, fmt::format("region          {} plane {} {} 0 {} {} 0 side in units box\n", name,
+                           distance * normal[0] + 0.0, distance * normal[1] + 0.0, 0.0 - normal[0], 0.0 - normal[1])});
+  });
+  return regions;
+}
+
+}  // namespace
+
 std::vector<Region> round_regions(const Specimen& s) {
   using geometry::Surface;
   std::vector<Region> regions;
   if (!s.round()) return regions;
+  if (s.scene.container.is_polygon()) return side_regions(s.scene.container);
   const double c = s.radius();
   const auto cylinder = [&](const char* name, double radius, const char* side) {
     regions.push_back({name, fmt::format("region          {} cylinder z {} {} {} INF INF side {} units box\n", name, c,

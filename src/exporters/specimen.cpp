@@ -83,6 +83,9 @@ std::string vessel_words(const Specimen& s) {
     case geometry::Shape::mesh:
       return fmt::format("mesh: the room of {:.9g} m3 inside {} triangles, from z = 0 to {}", vessel.room->volume(),
                          vessel.room->shell().triangles.size(), vessel.room->high()[2]);
+    case geometry::Shape::polygon:
+      return fmt::format("polygon: walls on {} sloping sides between x = 0 and {}", vessel.polygon->sloping().size(),
+                         vessel.polygon->width());
     default:
       return fmt::format("cylinder: wall of radius {0} around x = y = {0}", s.radius());
   }

@@ -79,7 +79,7 @@ struct Specimen {
   std::vector<pack::TouchingRow> touching;  ///< contacts with their forces; on rank 0, for codes that read forces
 
   [[nodiscard]] bool flat() const { return scene.container.dimension == 2; }
-  /// A vessel that is no box: its walls go around the axis at x = y = radius.
+  /// A vessel that is no box: its walls go around the axis at x = y = radius, or are sides of a polygon.
   [[nodiscard]] bool round() const { return !scene.container.is_box(); }
   [[nodiscard]] bool has(geometry::Surface wall) const { return scene.container.has(wall); }
   [[nodiscard]] double radius() const { return scene.container.radius(); }  ///< [m] of it

@@ -31,7 +31,8 @@ std::string cell(const Specimen& s) {
   return fmt::format("##PERIODIC:: {:.17g} {:.17g} {:.17g}\n", size[0], size[1], size[2]);
 }
 
-bool has_round_walls(const Specimen& s) { return s.round() && !s.scene.container.is_mesh(); }
+bool has_facets(const Specimen& s) { return s.scene.container.is_mesh() || s.scene.container.is_polygon(); }
+bool has_round_walls(const Specimen& s) { return s.round() && !has_facets(s); }
 
 bool is_round(int wall) {
   return wall >= static_cast<int>(geometry::most_planes) && wall < static_cast<int>(geometry::most_surfaces);
@@ -48,18 +49,18 @@ struct Plane {
 std::vector<Plane> planes(const Specimen& s) {
   std::vector<Plane> all;
   if (s.has(geometry::Surface::floor)) all.push_back({0, s.vertical(), 0.0});
-  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
-    if (s.periodic(axis)) continue;
-    all.push_back({static_cast<int>(2 * axis + 1), axis, 0.0});
-    all.push_back({static_cast<int>(2 * axis + 2), axis, s.size[axis]});
+  for (std::size_t axis = 0; axis < s.vertical(); ++axis) {
+    const int low = static_cast<int>(2 * axis + 1);
+    if (s.has(static_cast<geometry::Surface>(low))) all.push_back({low, axis, 0.0});
+    if (s.has(static_cast<geometry::Surface>(low + 1))) all.push_back({low + 1, axis, s.size[axis]});
   }
   if (const auto& lid = s.scene.container.lid) all.push_back({5, s.vertical(), *lid});
   return all;
 }
 
-std::string facets_words(const Specimen& s) {
-  std::string text = "walls = [utils.facet(corners, material='walls') for corners in [\n";
-  for (const auto& [a, b, c] : facets(*s.scene.container.room)) {
+std::string facets_words(const std::vector<mesh::Corners>& triangles) {
+  std::string text = "[utils.facet(corners, material='walls') for corners in [\n";
+  for (const auto& [a, b, c] : triangles) {
     text += "    (";
     for (const Vec3& x : {a, b, c}) text += fmt::format("({}, {}, {}), ", x[0], x[1], x[2]);
     text += "),\n";
@@ -68,12 +69,13 @@ std::string facets_words(const Specimen& s) {
 }
 
 std::string walls(const Specimen& s) {
-  if (s.scene.container.is_mesh()) return facets_words(s);
+  if (s.scene.container.is_mesh()) return "walls = " + facets_words(facets(*s.scene.container.room));
   std::string text = "walls = []\n";
   for (const Plane& plane : planes(s)) {
     text += fmt::format("walls.append(utils.wall({}, axis={}, sense={}, material='walls'))\n", plane.at, plane.axis,
                         plane.at > 0.0 ? -1 : 1);
   }
+  if (s.scene.container.is_polygon()) text += "walls += " + facets_words(facets(s));
   return text;
 }
 
@@ -83,6 +85,8 @@ class WallBodies {
   explicit WallBodies(const Specimen& s) : first_(s.count) {
     if (!s.scene.container.is_mesh()) {
       std::ranges::transform(planes(s), std::back_inserter(numbers_), &Plane::number);
+      const std::size_t sloping = s.scene.container.is_polygon() ? s.scene.container.polygon->sloping().size() : 0;
+      for (std::size_t k = 0; k < sloping; ++k) numbers_.push_back(static_cast<int>(geometry::most_surfaces + k));
       return;
     }
     const mesh::Surface& room = *s.scene.container.room;
@@ -183,7 +187,7 @@ std::string drift(const Specimen& s) {
 }
 
 std::string engines(const Specimen& s) {
-  const bool mesh = s.scene.container.is_mesh();
+  const bool faceted = has_facets(s);
   const double g = s.scene.in.jamming.gravity;
   const double xi = s.scene.in.contact.damping_ratio;
   return fmt::format(
@@ -196,7 +200,7 @@ std::string engines(const Specimen& s) {
       "{5}    newton,\n]\nO.dt = {2}\n\n\n",
       s.scene.features.mixture ? yade_physics(s) : fmt::format("betan={0}, betas={0}", xi),
       s.flat() ? fmt::format("0, {}, 0", -g) : fmt::format("0, 0, {}", -g), step_of_stronger_dashpot(s),
-      mesh ? ", Bo1_Facet_Aabb()" : "", mesh ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "",
+      faceted ? ", Bo1_Facet_Aabb()" : "", faceted ? ", Ig2_Facet_Sphere_ScGeom(hertzian=True)" : "",
       has_round_walls(s) ? "    PyRunner(command='push_off_round_walls()', iterPeriod=1, initRun=True),\n" : "");
 }
 

@@ -71,9 +71,10 @@ double fit_room(const scene::Scene& scene, double particles, double fraction) {
   const double target = vessel.height();
   const double below = clipped ? scene::height_below(scene, target) : target;
   const double left = target - below;
-  const bool fixed = vessel.is_mesh() || vessel.shape == geometry::Shape::sphere;
+  const bool flat = scene.in.container.shape == input::VesselShape::polygon;
+  const bool fixed = vessel.is_mesh() || vessel.shape == geometry::Shape::sphere || flat;
   if (!fixed) return particles * mean_volume(scene) / (vessel.mean_area(0.0, below) * fraction) + left;
-  const double top = vessel.is_mesh() ? vessel.room->high()[2] : vessel.size[0];
+  const double top = flat ? vessel.polygon->top() : vessel.is_mesh() ? vessel.room->high()[2] : vessel.size[0];
   const double height = vessel.level(particles * mean_volume(scene) / fraction) + left;
   if (height <= top) return height;
   refuse(fmt::format("{} particles do not fit into this vessel, which takes about {:.0f}", particles,

@@ -175,14 +175,19 @@ Ring Container::ring(double height, double margin) const {
   }
 }
 
-Facing Container::facing_mesh(std::size_t feature, const Vec3& x) const {
-  const mesh::Touch touch = room->touch_of(static_cast<std::int32_t>(feature), x, behind);
+Facing Container::facing_part(std::size_t part, const Vec3& x) const {
+  if (is_polygon()) {
+    const Side& side = polygon->sloping()[part];
+    return {side.distance(x), side.normal};
+  }
+  const mesh::Touch touch = room->touch_of(static_cast<std::int32_t>(part), x, behind);
   return {touch.distance, {touch.normal[0], touch.normal[1], touch.normal[2]}};
 }
 
 double Container::room_between(double margin, double low, double high) const {
   if (!(low < high)) return 0.0;
   if (is_mesh()) return room->room_between(margin, low, high);
+  if (is_polygon()) return area_of(polygon->within(margin, low, high));
   if (shape == Shape::frustum) return room_in_frustum(*this, margin, low, high);
   if (shape == Shape::sphere) return room_in_sphere(*this, margin, low, high);
   const Ring here = ring(0.0, margin);
@@ -191,6 +196,7 @@ double Container::room_between(double margin, double low, double high) const {
 
 double Container::area_at(double height) const {
   if (is_mesh()) return room->area_at(height);
+  if (is_polygon()) return polygon->width_at(height);
   if (straight()) return section();
   const double outer = ring(height, 0.0).outer;
   return dimension == 2 ? 2.0 * outer : std::numbers::pi * (outer * outer);
@@ -202,6 +208,7 @@ double Container::level(double volume) const {
   const double below = volume_between(0.0, top);
   if (shape == Shape::sphere) top = size[0];
   if (is_mesh()) top = room->high()[2];
+  if (is_polygon() && closes()) top = polygon->top();
   if (shape == Shape::frustum && closes()) top = Cone(*this).height(0.0, 0.0);
   if (volume >= volume_between(0.0, top)) return closes() ? top : top + (volume - below) / area_at(top);
   return place_of(volume, 0.0, top, [&](double z) { return volume_between(0.0, z); });
@@ -209,6 +216,7 @@ double Container::level(double volume) const {
 
 double Container::wall_area(double up_to) const {
   if (is_mesh()) return room->walls_below(up_to);
+  if (is_polygon()) return polygon->sides_below(up_to);
   if (shape == Shape::sphere && dimension == 2) {
     return 4.0 * radius() * elementary::arcsine(std::sqrt(std::clamp(up_to / size[0], 0.0, 1.0)));
   }
@@ -242,6 +250,7 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
   const auto up = static_cast<std::size_t>(vertical());
   const double bottom = low + radius, height = thickness - 2.0 * radius;
   if (is_mesh()) return room->draw(u, radius, bottom, bottom + height);
+  if (is_polygon()) return polygon->draw(u, radius, bottom, bottom + height);
   Vec3 place{};
   place[up] = bottom + u[up] * height;
   if (is_box()) {
@@ -272,6 +281,7 @@ double Container::slab(std::size_t axis, double from, double to, double low, dou
     return (room->volume_below(high, axis, to) - room->volume_below(high, axis, from)) -
            (room->volume_below(low, axis, to) - room->volume_below(low, axis, from));
   }
+  if (is_polygon()) return area_of(polygon->within(0.0, low, high, std::max(from, 0.0), std::min(to, size[0])));
   const double middle = 0.5 * size[axis];
   if (dimension == 2) {
     return area_in_rectangle(radius(), {from - middle, low - radius(), 0.0}, {to - middle, high - radius(), 0.0});
@@ -308,6 +318,10 @@ void Container::touching_planes(const Vec3& x, double range, const Found& found)
     room->touches(x, range, behind, [&](std::int32_t, const mesh::Touch& touch) {
       found({touch.normal[0], touch.normal[1], touch.normal[2]}, touch.distance);
     });
+    return;
+  }
+  if (is_polygon()) {
+    near_walls(x, range, [&](Surface wall, double distance) { found(facing(wall, x).normal, distance); });
     return;
   }
   for (std::size_t k = 0; k < most_round && !is_box(); ++k) {

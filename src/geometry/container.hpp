@@ -9,13 +9,14 @@
 #include <optional>
 
 #include "base/types.hpp"
+#include "geometry/polygon.hpp"
 #include "mesh/surface.hpp"
 
 namespace packmpi::geometry {
 
 /// A wall by its number: 0 floor; 1, 2 low and high side of x; 3, 4 of y (3D only); 5 the lid; 6 the mantle of a
 /// round vessel; 7 the inner wall of an annulus; 8 what goes on above a frustum that widens; from most_surfaces on the
-/// faces, edges and corners of a mesh.
+/// faces, edges and corners of a mesh, or what sides of a polygon are none of the planes.
 enum class Surface : std::int32_t {
   floor = 0,
   x_low = 1,
@@ -33,8 +34,8 @@ inline constexpr std::size_t most_surfaces = most_planes + most_round;
 inline constexpr std::size_t most_walls = most_surfaces + (std::size_t{1} << 24U);  ///< no mesh has as many parts
 
 /// What the vessel looks like: a rectangle or prism, a body of revolution about a vertical axis (in 2D a sphere is a
-/// circle), or the inside of a mesh.
-enum class Shape : std::int32_t { box, cylinder, frustum, sphere, annulus, mesh };
+/// circle), the inside of a mesh, or, in 2D, of a polygon.
+enum class Shape : std::int32_t { box, cylinder, frustum, sphere, annulus, mesh, polygon };
 
 /// Where a wall is, seen from a point: its distance [m], negative behind it, the unit vector towards it, and how it
 /// moves [m/s]; -0 where it stands, so that -0 - v is -v.
@@ -99,8 +100,8 @@ struct Ring {
 /// the top or under a lid, whose lateral axes end in walls or are periodic; or a body of revolution about a vertical
 /// axis, which stands in such a prism and touches its sides: a cylinder, a frustum (which goes on above H_d as a
 /// cylinder if it widens, else as the cone that it is), a sphere that is filled up to H_d, or an annulus; or what is
-/// inside a closed surface of triangles, which has neither floor nor lid of its own. In 2D, there is the circle beside
-/// the rectangle.
+/// inside a closed surface of triangles, which has neither floor nor lid of its own. In 2D there are, beside the
+/// rectangle, the circle, and convex polygons, trapezia among them.
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
@@ -112,6 +113,7 @@ struct Container {
   double core = 0.0;                    ///< [m] radius of the inner wall of an annulus
   const mesh::Surface* room = nullptr;  ///< of a mesh; its owner is asked::Container
   double behind = 0.0;                  ///< [m] of a mesh: half the smallest radius, see mesh::Table
+  const Polygon* polygon = nullptr;     ///< of a polygon; its owner is asked::Container
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }
@@ -119,11 +121,13 @@ struct Container {
   [[nodiscard]] constexpr bool is_box() const { return shape == Shape::box; }
   /// The same cross-section at every height?
   [[nodiscard]] constexpr bool straight() const {
-    return shape != Shape::frustum && shape != Shape::sphere && !is_mesh();
+    return shape != Shape::frustum && shape != Shape::sphere && !is_mesh() && !is_polygon();
   }
   [[nodiscard]] constexpr bool is_mesh() const { return shape == Shape::mesh; }
+  [[nodiscard]] constexpr bool is_polygon() const { return shape == Shape::polygon; }
   /// Does it narrow towards the top, so that nothing has room far above H_d?
   [[nodiscard]] constexpr bool closes() const {
+    if (is_polygon()) return polygon->top() < HUGE_VAL;
     return shape == Shape::sphere || is_mesh() || (shape == Shape::frustum && ends[1] < ends[0]);
   }
   [[nodiscard]] constexpr double radius() const { return 0.5 * size[0]; }  ///< [m] of a round vessel where it is widest
@@ -155,6 +159,10 @@ struct Container {
   [[nodiscard]] constexpr bool has(Surface surface) const {
     const auto number = static_cast<std::size_t>(surface);
     if (is_mesh()) return room != nullptr && number >= most_surfaces;
+    if (is_polygon()) {
+      return polygon->has_plane(number) ||
+             (number >= most_surfaces && number - most_surfaces < polygon->sloping().size());
+    }
     if (number == 0) return shape != Shape::sphere;
     if (surface == Surface::lid) return lid.has_value();
     if (!is_box()) {
@@ -181,7 +189,7 @@ struct Container {
   /// Where the wall of that number is, seen from `x`. Of those that this container has.
   [[nodiscard]] Facing facing(Surface wall, const Vec3& x) const {
     const auto number = static_cast<std::size_t>(wall);
-    if (number >= most_surfaces) return facing_mesh(number - most_surfaces, x);
+    if (number >= most_surfaces) return facing_part(number - most_surfaces, x);
     if (number >= most_planes) return round(number - most_planes).facing(x);
     const Plane flat = plane(wall);
     Facing facing{flat.distance(x), flat.normal()};
@@ -192,7 +200,8 @@ struct Container {
   /// their numbers.
   template <class Found>
   void near_walls(const Vec3& x, double range, Found&& found) const {
-    const std::size_t walls = is_box() ? most_planes : most_surfaces;
+    const std::size_t sloping = is_polygon() ? polygon->sloping().size() : 0;
+    const std::size_t walls = is_box() ? most_planes : most_surfaces + sloping;
     for (std::size_t number = 0; number < walls; ++number) {
       const auto surface = static_cast<Surface>(number);
       if (!has(surface)) continue;
@@ -218,9 +227,10 @@ struct Container {
     }
     return most;
   }
-  /// Not of a mesh. From the nearest side wall of a round vessel [m]; negative: behind it. NaN if a coordinate is. Of a
-  /// box: infinite.
+  /// Not of a mesh. From the nearest side wall of a round vessel or polygon [m]; negative: behind it. NaN if a
+  /// coordinate is. Of a box: infinite.
   [[nodiscard]] double from_sides(const Vec3& x) const {
+    if (is_polygon()) return polygon->from_sides(x);
     double least = HUGE_VAL;
     for (std::size_t k = 0; k < most_round && !is_box(); ++k) {
       if (!has(static_cast<Surface>(most_planes + k))) continue;
@@ -240,8 +250,8 @@ struct Container {
   /// Volume of such points between two heights [m]: [m3]; 2D: [m2]. Exact.
   [[nodiscard]] double room_between(double margin, double low, double high) const;
   /// The place of a centre for uniform numbers `u` in [0, 1): evenly over where a particle of `radius` [m] fits between
-  /// the side walls and within `thickness` [m] above the height `low` [m]. Of a mesh without a height (NaN) if none was
-  /// found.
+  /// the side walls and within `thickness` [m] above the height `low` [m]. Of a mesh or a polygon its z is NaN if
+  /// none was found.
   [[nodiscard]] Vec3 draw(const Vec3& u, double radius, double low, double thickness) const;
 
   /// Of what lies inside a round vessel the part with `axis` (0 or 1) between `from` and `to` and between two heights
@@ -253,8 +263,8 @@ struct Container {
   void touching_planes(const Vec3& x, double range, const std::function<void(const Vec3&, double)>& found) const;
 
  private:
-  [[nodiscard]] Facing facing_mesh(std::size_t feature, const Vec3& x) const;
-  [[nodiscard]] constexpr double section() const {  // of a straight one, at every height
+  [[nodiscard]] Facing facing_part(std::size_t part, const Vec3& x) const;  // of a mesh or polygon
+  [[nodiscard]] constexpr double section() const {                          // of a straight one, at every height
     if (shape == Shape::annulus) return std::numbers::pi * ((radius() - core) * (radius() + core));
     if (!is_box()) return std::numbers::pi * (radius() * radius());
     return dimension == 3 ? size[0] * size[1] : size[0];

@@ -160,6 +160,7 @@ double area_in_disc(double r, double b, double up, double around, double low, do
 
 double volume_away_from(const Container& vessel, Surface surface, double margin, const Vec3& x, double r, double low,
                         double high) noexcept {
+  if (vessel.is_polygon()) return area_in_polygon(r, x, vessel.polygon->within(margin, low, high));
   const RoundWall wall = vessel.round(static_cast<std::size_t>(surface) - most_planes);
   const double across = x[0] - wall.centre[0], along = x[1] - wall.centre[1];
   const double b = std::sqrt(across * across + along * along + RoundWall::tiny);

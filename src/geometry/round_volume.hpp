@@ -21,8 +21,8 @@ namespace packmpi::geometry {
 [[nodiscard]] double area_in_disc(double r, double b, double up, double around, double low, double high) noexcept;
 
 /// [m3] of a sphere, in 2D [m2] of a disc, at `x` of radius `r` what is at least `margin` away from the wall `surface`
-/// of a round vessel, on its inner side, and between the heights `low` and `high` of the vessel (all [m]). Error below
-/// 1e-9 r^3, or r^2.
+/// of a round vessel, on its inner side, and between the heights `low` and `high` of the vessel (all [m]). Of a
+/// polygon: away from all its sides but the floor. Error below 1e-9 r^3, or r^2.
 [[nodiscard]] double volume_away_from(const Container& vessel, Surface surface, double margin, const Vec3& x, double r,
                                       double low, double high) noexcept;
 

@@ -88,10 +88,15 @@ constexpr Condition frustum{"shape = \"frustum\"",
 constexpr Condition annulus{"shape = \"annulus\"",
                             [](const Input& in) { return in.container.shape == VesselShape::annulus; }};
 constexpr Condition meshed{"shape = \"mesh\"", [](const Input& in) { return in.container.shape == VesselShape::mesh; }};
-constexpr Condition prism{"shape = \"prism\"",
-                          [](const Input& in) { return in.container.shape == VesselShape::prism; }};
+constexpr Condition cornered{"shape = \"prism\" or \"polygon\"", [](const Input& in) {
+                               return in.container.shape == VesselShape::prism ||
+                                      in.container.shape == VesselShape::polygon;
+                             }};
+constexpr Condition trapezium{"shape = \"trapezium\"",
+                              [](const Input& in) { return in.container.shape == VesselShape::trapezium; }};
 constexpr Condition round{"shape = \"cylinder\", \"sphere\", \"annulus\" or \"circle\"", [](const Input& in) {
-                            return vessel.holds(in) && !frustum.holds(in) && !prism.holds(in) && !meshed.holds(in);
+                            return vessel.holds(in) && !frustum.holds(in) && !cornered.holds(in) && !meshed.holds(in) &&
+                                   !trapezium.holds(in);
                           }};
 constexpr Condition equal{"distribution = \"equal\"", [](const Input& in) { return is(in, SizeDistribution::equal); }};
 constexpr Condition gaussian{"distribution = \"gaussian\"",
@@ -153,7 +158,7 @@ std::vector<Key> container_keys() {
           "2: discs in a rectangle (spheres whose centres stay in a plane); 3: spheres in a prism."),
     word("container.shape", at(container, &Container::shape), "box",
           "\"box\": a prism, in 2D a rectangle; \"cylinder\": a vertical one, whose axis is at x = y = diameter / 2; \"frustum\": a cone without its tip, "
-          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders; \"prism\": upright over a polygon; \"mesh\": the room inside a closed surface of triangles; in 2D, \"circle\": filled from above up to a height (doc/vessels.md)."),
+          "wider above or below; \"sphere\": filled from above up to a height; \"annulus\": the room between two coaxial cylinders; \"prism\": upright over a polygon; \"mesh\": the room inside a closed surface of triangles; in 2D, \"circle\": filled from above up to a height, \"trapezium\": wider above or below, \"polygon\": a convex one (doc/vessels.md)."),
     when(boxed, reals("container.size", at(container, &Container::size), Count::axes, length, above(0), mandatory,
           "Lateral extents, then the height H_d to be filled: [L, H_d] in 2D, [L, B, H_d] in 3D. Of a cylinder [D, D, H_d] stands for diameter and height.")),
     when(round, real("container.diameter", at(container, &Container::diameter), length, above(0), mandatory, "Diameter inside.")),
@@ -161,8 +166,11 @@ std::vector<Key> container_keys() {
     when(frustum, real("container.top_diameter", at(container, &Container::top_diameter), length, above(0), mandatory,
           "Diameter inside at the height H_d. A frustum that widens goes on above H_d as a cylinder, one that narrows as the cone that it is.")),
     when(annulus, real("container.inner_diameter", at(container, &Container::inner_diameter), length, above(0), mandatory, "Diameter of the cylinder inside, seen from outside.")),
-    when(prism, reals("container.polygon", at(container, &Container::polygon), Count::any, length, any, mandatory,
-          "Corners [x, y] of its section, one after the other, either way round; convex. The lower corner of the rectangle around it comes to x = y = 0. Packs have the prism as the mesh that it is.")),
+    when(trapezium, real("container.bottom_width", at(container, &Container::bottom_width), length, above(0), mandatory, "Width inside at the floor.")),
+    when(trapezium, real("container.top_width", at(container, &Container::top_width), length, above(0), mandatory,
+          "Width inside at the height H_d. A trapezium that widens goes on above H_d as wide as it is, one that narrows up to its tip.")),
+    when(cornered, reals("container.polygon", at(container, &Container::polygon), Count::any, length, any, mandatory,
+          "Corners [x, y], of a prism those of its section, one after the other, either way round; convex. The lower corner of the rectangle around it comes to x = y = 0. Packs have the prism as the mesh that it is.")),
     when(meshed, word("container.file", at(container, &Container::file), R"("")",
           "The surface, in the scene's folder or below it: STL in text or in binary (.stl), or OBJ (.obj). The lower corner of the box around it comes to x = y = z = 0.")),
     when(meshed, word("container.unit", at(container, &Container::unit), R"("m")", "What its lengths are in: \"m\", \"mm\" and the like.")),

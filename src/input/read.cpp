@@ -298,7 +298,7 @@ void read_document(const Document& document, const NamedFiles& files, const Mixt
   }
   if (!in.container.file.empty()) check_name(document.place(mesh_file_key), mesh_file_key, in.container.file, "mesh");
   take_mesh(document, files.surfaces, in);
-  take_vessel(in.container);
+  take_vessel(document, in.container);
   if (insertion_alone(in)) in.layers.thickness = in.container.size.back();
   take_curve(document, files.curve, in);
   take_list(document, files.curve, in);

@@ -63,6 +63,9 @@ struct Case {
     return axis + 1 == in.container.size.size() ? "container.height" : room_key();
   }
   [[nodiscard]] const char* room_key() const {
+    if (is(VesselShape::polygon)) return "container.polygon";
+    if (is(VesselShape::trapezium))
+      return in.container.bottom_width < in.container.top_width ? "container.top_width" : "container.bottom_width";
     if (is(VesselShape::mesh))
       return document.find("container.polygon") != nullptr ? "container.polygon" : "container.file";
     if (!is(VesselShape::frustum)) return boxed() ? "container.size" : "container.diameter";

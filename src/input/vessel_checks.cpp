@@ -1,4 +1,7 @@
 // What is asked of vessels.
+#include <algorithm>
+#include <array>
+
 #include "input/checks.hpp"
 #include "input/scene_case.hpp"
 #include "input/words.hpp"
@@ -75,18 +78,21 @@ void check_vessel(const Case& scene) {
   }
   if (scene.is(VesselShape::mesh)) return check_mesh(scene);
   if (scene.is(VesselShape::frustum)) check_frustum(scene);
+  if (const auto flaw = flaw_of_sides(c, scene.largest())) scene.refuse(flaw->key, flaw->words);
 }
 
 void check_shape(const Input& in, const Document& document) {
   const Case scene{in, document};
-  const bool flat = scene.is(VesselShape::circle);
+  using enum VesselShape;
+  constexpr std::array<std::array<VesselShape, 2>, 5> likes{
+      {{circle, sphere}, {trapezium, frustum}, {polygon, prism}, {polygon, mesh}, {box, box}}};  // in 2D and in 3D
+  const VesselShape shape = in.container.shape;
+  const bool flat = scene.is(circle) || scene.is(trapezium) || scene.is(polygon);
   if (scene.boxed() || flat == scene.plane()) return;
-  const bool ball = scene.is(VesselShape::circle) || scene.is(VesselShape::sphere);
-  scene.refuse("container.shape", fmt::format("\"{}\" is a vessel in {}D; give dimension = {}, or shape = \"{}\"",
-                                              word(in.container.shape), flat ? 2 : 3, flat ? 2 : 3,
-                                              !ball  ? "box"
-                                              : flat ? "sphere"
-                                                     : "circle"));
+  const auto like = std::ranges::find_if(likes, [&](const auto& one) { return one[flat ? 0 : 1] == shape; });
+  scene.refuse("container.shape",
+               fmt::format("\"{}\" is a vessel in {}D; give dimension = {}, or shape = \"{}\"", word(shape),
+                           flat ? 2 : 3, flat ? 2 : 3, word(like == likes.end() ? box : (*like)[flat ? 1 : 0])));
 }
 
 }  // namespace packmpi::input

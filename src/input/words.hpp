@@ -11,8 +11,8 @@ template <class Enum>
 inline constexpr std::array<std::string_view, 0> words_of{};
 
 template <>
-inline constexpr std::array<std::string_view, 8> words_of<VesselShape>{"box",     "cylinder", "frustum", "sphere",
-                                                                       "annulus", "prism",    "mesh",    "circle"};
+inline constexpr std::array<std::string_view, 10> words_of<VesselShape>{
+    "box", "cylinder", "frustum", "sphere", "annulus", "prism", "mesh", "circle", "trapezium", "polygon"};
 template <>
 inline constexpr std::array<std::string_view, 4> words_of<Body>{"sphere", "cylinder", "box", "mesh"};
 template <>

@@ -27,7 +27,7 @@ struct WallList {
   /// Of a mesh: triangles of its faces that each entry's particle may be above, `near` from near_begin[entry] up to
   /// near_begin[entry + 1]. Of other containers both are empty.
   std::vector<std::int32_t> near_begin, near;
-  /// Of a mesh, where each entry's wall is: see Neighborhood::face_walls. Of other containers empty.
+  /// Of a mesh or a polygon, where each entry's wall is: see Neighborhood::face_walls. Of other containers empty.
   std::vector<geometry::Facing> facing;
 };
 

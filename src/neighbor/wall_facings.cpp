@@ -1,4 +1,4 @@
-// What each particle touches of a mesh.
+// What each particle touches of a mesh or a polygon.
 #include <algorithm>
 #include <cmath>
 
@@ -91,6 +91,12 @@ struct Touched {
 
 void Neighborhood::face_walls(const particles::Store& store) {
   const geometry::Container& vessel = scene_->container;
+  if (vessel.is_polygon()) {
+    walls_.facing.resize(walls_.particle.size());
+    for (std::size_t k = 0; k < walls_.particle.size(); ++k) {
+      walls_.facing[k] = vessel.facing(walls_.wall[k], store.position(walls_.particle[k]));
+    }
+  }
   if (!vessel.is_mesh()) return;
   const mesh::Features& features = vessel.room->features();
   const mesh::Table table = features.table(vessel.behind);

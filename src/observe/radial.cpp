@@ -22,12 +22,22 @@ std::vector<double> solid_away(const Specimen& pack, Surface surface, const std:
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
     if (pack.bulk.low - x[up] >= r || pack.bulk.high - x[up] <= -r) continue;
-    const double reach = vessel.facing(surface, x).distance + r;
+    const double reach = (vessel.is_polygon() ? vessel.from_sides(x) : vessel.facing(surface, x).distance) + r;
     for (std::size_t k = 0; k < margins.size() && margins[k] < reach; ++k) {
       terms[k].push_back(geometry::volume_away_from(vessel, surface, margins[k], x, r, pack.bulk.low, pack.bulk.high));
     }
   }
   return comm::exact_sums(pack.comm, terms);
+}
+
+// The farthest that a point between two heights can be from the sides of a polygon [m].
+double widest_margin(const geometry::Container& vessel, double low, double high) {
+  double inside = 0.0, outside = vessel.radius();
+  for (int turn = 0; turn < 50; ++turn) {
+    const double middle = 0.5 * (inside + outside);
+    (vessel.room_between(middle, low, high) > 0.0 ? inside : outside) = middle;
+  }
+  return inside;
 }
 
 // The farthest that a point of the bulk can be from a wall [m].
@@ -39,6 +49,7 @@ double farthest(const Specimen& pack, Surface surface) {
   };
   if (vessel.straight()) return vessel.radius();
   const double low = pack.bulk.low, high = pack.bulk.high;
+  if (vessel.is_polygon()) return widest_margin(vessel, low, high);
   const double middle = std::clamp(vessel.radius(), low, high);  // a sphere's
   return std::max({at(low), at(high), vessel.shape == geometry::Shape::sphere ? at(middle) : 0.0});
 }

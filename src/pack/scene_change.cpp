@@ -88,9 +88,11 @@ std::string container_change(const input::Container& before, const input::Contai
   }
   if (now.surface != before.surface) return "a mesh of another surface than the scene's; give that of the pack";
   const bool wall = now.bottom_diameter == before.bottom_diameter && now.top_diameter == before.top_diameter &&
-                    now.inner_diameter == before.inner_diameter;
-  const bool slope = now.shape != input::VesselShape::frustum || now.size.back() == before.size.back();
-  if (!wall || !slope) return "a vessel of other diameters or another height than the scene's; give those of the pack";
+                    now.inner_diameter == before.inner_diameter && now.bottom_width == before.bottom_width &&
+                    now.top_width == before.top_width && now.polygon == before.polygon;
+  const bool slopes = now.shape == input::VesselShape::frustum || now.shape == input::VesselShape::trapezium;
+  const bool slope = !slopes || now.size.back() == before.size.back();
+  if (!wall || !slope) return "a vessel of other lengths or another height than the scene's; give those of the pack";
   for (std::size_t axis = 0; axis + 1 < now.size.size(); ++axis) {
     if (now.size[axis] == before.size[axis] && now.boundary[axis] == before.boundary[axis]) continue;
     return fmt::format(

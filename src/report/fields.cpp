@@ -32,6 +32,8 @@ std::vector<disk::Field> target_fields(const RunRecord& r) {
   if (r.shape != "box") fields.push_back({"shape", "", r.shape});
   if (r.bottom_diameter > 0.0) fields.push_back({"bottom_diameter", "m", r.bottom_diameter});
   if (r.top_diameter > 0.0) fields.push_back({"top_diameter", "m", r.top_diameter});
+  if (r.bottom_width > 0.0) fields.push_back({"bottom_width", "m", r.bottom_width});
+  if (r.top_width > 0.0) fields.push_back({"top_width", "m", r.top_width});
   if (r.inner_diameter > 0.0) fields.push_back({"inner_diameter", "m", r.inner_diameter});
   if (r.target_particles > 0) fields.push_back({"target_particles", "", r.target_particles});
   if (r.density.on()) {

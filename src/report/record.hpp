@@ -94,6 +94,7 @@ struct RunRecord {
   std::string shape = "box";  ///< of the container, as the scene calls it
   Vec3 size{};                ///< [m] container; of another shape than a box the prism around it
   double bottom_diameter = 0.0, top_diameter = 0.0, inner_diameter = 0.0;  ///< [m] of vessels that have them
+  double bottom_width = 0.0, top_width = 0.0;                              ///< [m] of a trapezium
   double target_height = 0.0;                                              ///< [m] H_d
   double target_fraction = 0.0;                                            ///< phi_0 of each insertion
   std::int64_t target_particles = 0;                                       ///< 0: as many as the height takes

@@ -86,6 +86,7 @@ report::RunRecord targets_of(const comm::Comm& comm, const scene::Scene& scene) 
   record.size = scene.container.size;
   record.bottom_diameter = 2.0 * scene.container.ends[0], record.top_diameter = 2.0 * scene.container.ends[1];
   record.inner_diameter = 2.0 * scene.container.core;
+  record.bottom_width = scene.in.container.bottom_width, record.top_width = scene.in.container.top_width;
   record.target_height = scene.container.height();
   record.target_fraction = scene.in.layers.fraction;
   record.target_particles = scene.in.particles.count;

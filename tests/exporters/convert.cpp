@@ -460,6 +460,25 @@ TEST_F(Convert, WallsOfVesselsIn2DAreThoseThatACodeHas) {
   EXPECT_TRUE(
       contains(refused({.pack = circle, .format = "csv", .cut = "box:length=9,height=0.5"}, ExitCode::bad_input),
                "its corner (0.5, 0.05) m is outside the vessel"));
+  const std::string hopper = pack_in("shape = \"trapezium\"\nbottom_width = 6.0\ntop_width = 12.0\nheight = 1.0\n");
+  const std::string lammps = in_file(hopper, "lammps");
+  EXPECT_TRUE(contains(lammps, "region          side1 plane 0 0 0 1 0 0 side in units box"));
+  EXPECT_TRUE(contains(lammps, "region          side2 plane 12 0 0 -1 0 0 side in units box"));
+  const std::string left = "region          side3 plane ";
+  ASSERT_TRUE(contains(lammps, left));
+  std::array<double, 6> plane{};  // a point of it, and the normal into the room
+  std::istringstream numbers(lammps.substr(lammps.find(left) + left.size()));
+  for (double& number : plane) numbers >> number;
+  EXPECT_NEAR(plane[0] / 3.0 + plane[1], 1.0, 1e-14);  // through (3, 0) and (0, 1)
+  EXPECT_NEAR(plane[3], std::sqrt(0.1), 1e-15);
+  EXPECT_NEAR(plane[4], 3.0 * std::sqrt(0.1), 1e-15);
+  EXPECT_TRUE(contains(lammps, "yplane 0 NULL") && contains(lammps, "region side4\n"));
+  EXPECT_FALSE(contains(lammps, "curvature"));
+  const std::string yade = in_file(hopper, "yade");
+  EXPECT_TRUE(contains(yade, "walls += [utils.facet(corners, material='walls') for corners in [\n"));
+  EXPECT_TRUE(contains(yade, "utils.wall(0, axis=1") && contains(yade, "utils.wall(12, axis=0"));
+  EXPECT_TRUE(
+      contains(refused({.pack = hopper, .format = "liggghts"}, ExitCode::bad_input), "use lammps or yade, or csv"));
 }
 
 TEST_F(Convert, AMeshIsCarriedAsTriangles) {

@@ -253,7 +253,9 @@ TEST_F(Estimates, OtherVesselsGetTheirHeight) {
   for (const std::string& shape :
        {frustum + "0.2\ntop_diameter = 0.1\n", std::string("shape = \"sphere\"\ndiameter = 0.2\n"),
         std::string("shape = \"annulus\"\ndiameter = 0.2\ninner_diameter = 0.08\n"),
-        std::string("dimension = 2\nshape = \"circle\"\ndiameter = 0.6\n")}) {
+        std::string("dimension = 2\nshape = \"circle\"\ndiameter = 0.6\n"),
+        std::string("dimension = 2\nshape = \"trapezium\"\nbottom_width = 0.7\ntop_width = 0.5\n"),
+        std::string("dimension = 2\nshape = \"polygon\"\npolygon = [[0.2, 0], [0.8, 0.3], [0.8, 0.8], [0, 0.6]]\n")}) {
     SCOPED_TRACE(shape);
     const report::Estimate e = found(shape, 2000);
     EXPECT_NEAR(static_cast<double>(e.particles.value), 2000.0, 20.0);

@@ -6,8 +6,11 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "geometry/container.hpp"
+#include "geometry/cut_volume.hpp"
+#include "geometry/polygon.hpp"
 #include "geometry/round_volume.hpp"
 #include "geometry/volume.hpp"
 
@@ -142,6 +145,134 @@ TEST(Circle, CutsDiscsToABillionth) {
     }
   }
   EXPECT_GT(cut, 40);
+}
+
+Container in_polygon(const Polygon& polygon, double height) {
+  Container made;
+  made.dimension = 2;
+  made.size = {polygon.width(), height, 0.0};
+  made.shape = Shape::polygon;
+  made.polygon = &polygon;
+  return made;
+}
+const Polygon& widening() {
+  static const Polygon one(0.8, 2.0, 1.5);
+  return one;
+}
+const Polygon& narrowing() {
+  static const Polygon one(2.0, 0.8, 1.5);
+  return one;
+}
+/// A floor, an upright side, and three that slope.
+const Polygon& house() {
+  static const Polygon one(Corners{{0.3, 0.0}, {1.4, 0.0}, {2.0, 0.7}, {1.1, 1.8}, {0.0, 1.2}, {0.0, 0.4}});
+  return one;
+}
+const std::array<const Polygon*, 3>& polygons() {
+  static const std::array<const Polygon*, 3> all{&widening(), &narrowing(), &house()};
+  return all;
+}
+
+TEST(Polygons, HaveTheWallsThatTheyHave) {
+  EXPECT_TRUE(widening().has_plane(0) && widening().has_plane(1) && widening().has_plane(2));
+  EXPECT_TRUE(narrowing().has_plane(0) && !narrowing().has_plane(1) && !narrowing().has_plane(2));
+  EXPECT_TRUE(house().has_plane(0) && house().has_plane(1) && !house().has_plane(2));
+  EXPECT_EQ(widening().sloping().size(), 2U);
+  EXPECT_EQ(narrowing().sloping().size(), 2U);
+  EXPECT_EQ(house().sloping().size(), 4U);
+  EXPECT_EQ(widening().top(), HUGE_VAL);
+  EXPECT_NEAR(narrowing().top(), 2.5, 1e-14);
+  EXPECT_EQ(house().top(), 1.8);
+  const Container v = in_polygon(house(), 1.5);
+  EXPECT_TRUE(v.has(Surface::floor) && v.has(Surface::x_low) && !v.has(Surface::x_high) && v.closes());
+  EXPECT_FALSE(in_polygon(widening(), 1.5).closes());
+  const auto sloping = [&](std::size_t k) { return static_cast<Surface>(most_surfaces + k); };
+  EXPECT_TRUE(v.has(sloping(3)) && !v.has(sloping(4)) && !v.has(Surface::mantle));
+  // The side from (2.0, 0.7) to (1.1, 1.8): by the definition.
+  const Vec3 x{1.2, 0.6, 0.0};
+  const Facing facing = v.facing(sloping(1), x);
+  const double length = std::hypot(0.9, 1.1);
+  EXPECT_NEAR(facing.distance, std::abs(0.9 * (x[1] - 0.7) + 1.1 * (x[0] - 2.0)) / length, 1e-15);
+  EXPECT_NEAR(facing.normal[0], 1.1 / length, 1e-15);
+  EXPECT_NEAR(facing.normal[1], 0.9 / length, 1e-15);
+  std::vector<std::size_t> found;
+  v.near_walls({0.3, 0.2, 0.0}, 0.35, [&](Surface wall, double) { found.push_back(static_cast<std::size_t>(wall)); });
+  EXPECT_EQ(found, (std::vector<std::size_t>{0, 1, most_surfaces + 3}));
+  EXPECT_NEAR(v.beyond({0.5, -0.25, 0.0}), 0.25, 1e-15);
+  EXPECT_TRUE(std::isnan(v.beyond({std::nan(""), 0.5, 0.0})));
+}
+
+TEST(Polygons, RoomsAreWhatIsInsideTheirSides) {
+  for (const Polygon* polygon : polygons()) {
+    const Container v = in_polygon(*polygon, 1.5);
+    for (const double margin : {0.0, 0.13}) {
+      const auto room = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - margin; };
+      for (const auto& [low, high] : {std::pair(0.05, 1.5), std::pair(0.3, 0.9), std::pair(1.2, 2.1)}) {
+        EXPECT_NEAR(v.room_between(margin, low, high), area_by_lines(room, 0.0, 2.0, low, high, 4000), 2e-4);
+      }
+      if (margin > 0.0) continue;
+      EXPECT_NEAR(v.slab(0, 0.2, 0.7, 0.3, 1.4), area_by_lines(room, 0.2, 0.7, 0.3, 1.4, 4000), 1e-6);
+    }
+    for (const double z : {0.1, 0.8, 1.5}) {
+      EXPECT_NEAR(v.level(v.volume_between(0.0, z)), z, 1e-12);
+      EXPECT_NEAR(v.area_at(z), (v.volume_between(z - 1e-5, z + 1e-5)) / 2e-5, 1e-5);
+    }
+  }
+  EXPECT_NEAR(in_polygon(widening(), 1.5).volume_between(0.0, 2.5), 1.4 * 1.5 + 2.0, 1e-14);
+  EXPECT_NEAR(in_polygon(widening(), 1.5).level(4.1), 2.5, 1e-14);
+  EXPECT_NEAR(in_polygon(narrowing(), 1.5).volume_between(0.0, 9.0), 2.5, 1e-14);
+  EXPECT_NEAR(in_polygon(narrowing(), 1.5).level(99.0), 2.5, 1e-14);
+  EXPECT_NEAR(in_polygon(widening(), 1.5).wall_area(2.0), 2.0 * std::hypot(1.5, 0.6) + 1.0, 1e-14);
+  EXPECT_NEAR(in_polygon(narrowing(), 1.5).wall_area(1.5), 2.0 * std::hypot(1.5, 0.6), 1e-14);
+  const double around = std::hypot(0.6, 0.7) + std::hypot(0.9, 1.1) + std::hypot(1.1, 0.6) + 0.8 + std::hypot(0.3, 0.4);
+  EXPECT_NEAR(in_polygon(house(), 1.5).wall_area(1.8), around, 1e-14);
+}
+
+TEST(Polygons, PlacesAreDrawnEvenly) {
+  for (const Polygon* polygon : polygons()) expect_even_places(in_polygon(*polygon, 1.5), 0.2, 1.5);
+  const Vec3 none = in_polygon(narrowing(), 1.5).draw({0.5, 0.5, 0.5}, 0.1, 2.2, 0.5);  // too near to its tip
+  EXPECT_TRUE(std::isnan(none[2]));
+}
+
+// The sum over a fan of triangles does not know where the middle is; a disc in a half plane is a segment, in a quarter
+// that of a rectangle; and parts add up.
+TEST(Polygons, CutDiscsToABillionth) {
+  std::mt19937_64 engine(7);
+  const auto dice = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
+  };
+  int cut = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double r = dice(0.01, 0.5);
+    const Vec3 x{dice(-0.2, 2.2), dice(-0.2, 2.0), 0.0};
+    const double place = dice(0.1, 1.9), height = dice(0.1, 1.7), square = r * r;
+    const Corners lower{{0.0, 0.0}, {2.0, 0.0}, {2.0, height}, {0.0, height}};
+    const Vec3 low{-x[0], -x[1], 0.0}, high{2.0 - x[0], height - x[1], 0.0};
+    EXPECT_NEAR(area_in_polygon(r, x, lower), area_in_rectangle(r, low, high), 1e-9 * square) << k;
+    const Container v = in_polygon(house(), 1.5);
+    const double whole = area_in_polygon(r, x, house().within(0.0, 0.0, 1.8));
+    double parts = 0.0;
+    for (const auto& [from, to] : {std::pair(0.0, place), std::pair(place, 2.0)}) {
+      for (const auto& [bottom, top] : {std::pair(0.0, height), std::pair(height, 1.8)})
+        parts += area_in_polygon(r, x, house().within(0.0, bottom, top, from, to));
+    }
+    EXPECT_NEAR(parts, whole, 1e-9 * square) << k;
+    const auto room = [&](double a, double b) {
+      const Vec3 at{a, b, 0.0};
+      const double across = std::hypot(a - x[0], b - x[1]);
+      return std::min(-v.beyond(at), r - across);
+    };
+    if (k < 20) {
+      EXPECT_NEAR(whole, area_by_lines(room, x[0] - r, x[0] + r, x[1] - r, x[1] + r, 2000), 2e-3 * square);
+    }
+    if (whole > 0.0 && whole < 0.99 * volume(2, r)) ++cut;
+    if (room(x[0], x[1]) >= r) {
+      EXPECT_NEAR(whole, volume(2, r), 1e-13 * square);
+    }
+    EXPECT_NEAR(volume_away_from(v, Surface::mantle, 0.1, x, r, 0.2, 1.4),
+                area_in_polygon(r, x, house().within(0.1, 0.2, 1.4)), 1e-15);
+  }
+  EXPECT_GT(cut, 100);
 }
 
 }  // namespace

@@ -708,7 +708,27 @@ TEST(GoodInput, VesselsIn2D) {
   EXPECT_EQ(circle.container.boundary, (std::vector<Boundary>{Boundary::wall}));
   EXPECT_EQ(circle.layers.region, RegionRule::container);
   EXPECT_NEAR(container_of(circle.container).volume_between(0.0, 0.8), 0.16 * std::numbers::pi, 1e-15);
-  EXPECT_EQ(parse(circle.effective, "b.toml", {}).effective, circle.effective);
+  const Input hopper =
+      parse(in_vessel("dimension = 2\nshape = \"trapezium\"\nbottom_width = 0.3\ntop_width = \"80 cm\"\nheight = 0.5"),
+            "a.toml", {});
+  EXPECT_EQ(hopper.container.size, (std::vector<double>{0.8, 0.5}));
+  EXPECT_EQ(hopper.layers.region, RegionRule::open);
+  EXPECT_NEAR(container_of(hopper.container).volume_between(0.0, 0.5), 0.55 * 0.5, 1e-15);
+  const Input heap =
+      parse(in_vessel("dimension = 2\nshape = \"trapezium\"\nbottom_width = 0.8\ntop_width = 0.3\nheight = 0.5"),
+            "a.toml", {});
+  EXPECT_EQ(heap.layers.region, RegionRule::container) << "it narrows";
+  // Clockwise, and not at the origin.
+  const Input rhomb =
+      parse(in_vessel("dimension = 2\nshape = \"polygon\"\npolygon = [[1.0, 2.5], [1.5, 2.0], [1.0, 1.5], "
+                      "[0.5, 2.0]]\nheight = 0.75"),
+            "a.toml", {});
+  EXPECT_EQ(rhomb.container.size, (std::vector<double>{1.0, 0.75}));
+  EXPECT_EQ(rhomb.layers.region, RegionRule::container);
+  EXPECT_NEAR(container_of(rhomb.container).volume_between(0.0, 1.0), 0.5, 1e-15);
+  EXPECT_NEAR(container_of(rhomb.container).from_sides({0.5, 0.5, 0.0}), 0.5 * std::sqrt(0.5), 1e-15);
+  for (const Input& in : {circle, hopper, heap, rhomb})
+    EXPECT_EQ(parse(in.effective, "b.toml", {}).effective, in.effective);
 }
 
 TEST(GoodInput, InsertionAloneAsksForLittle) {

@@ -146,13 +146,22 @@ class Sections(unittest.TestCase):
     def test_walls_stand_where_they_are(self):
         for words, wanted in (({"shape": "cylinder"}, {0.0, 0.5, 0.25}), ({"shape": "annulus", "inner_diameter": 0.2}, {0.0, 0.15, 0.35, 0.5}),
                               ({"shape": "frustum", "bottom_diameter": 0.3, "top_diameter": 0.5}, {0.0, 0.1, 0.25, 0.4, 0.5}),
-                              ({"shape": "sphere"}, {0.0, 0.25, 0.5}), ({"shape": "circle"}, {0.0, 0.25, 0.5})):
-            pack = self.pack(size=[0.5, 0.5, 0.5], **words)
+                              ({"shape": "sphere"}, {0.0, 0.25, 0.5}), ({"shape": "circle"}, {0.0, 0.25, 0.5}),
+                              ({"shape": "trapezium", "bottom_width": 0.3, "top_width": 0.5}, {0.0, 0.5}), ({"shape": "polygon"}, {0.0, 0.4})):
+            pack = self.pack(b"[container]\npolygon = [[0.3, 1.0], [0.7, 1.0], [0.5, 1.4]]\n", size=[0.5, 0.5, 0.5], **words)
             sheet = render_2d.new_sheet(pack, 300)
             render_2d.put_vessel(sheet, pack)
             ends = {round(float(x), 6) for line in sheet.axes.lines for x in (min(line.get_xdata()), max(line.get_xdata()))}
             render_2d.plt.close(sheet.figure)
             self.assertEqual(ends, wanted, words)
+
+    def test_corners_of_trapezia_and_polygons(self):
+        pack = self.pack(b"[container]\npolygon = [[0.3, 1.0], [0.7, 1.0], [0.5, 1.4]]\n", shape="polygon")
+        np.testing.assert_allclose(vessel.corners(pack), [[0.0, 0.0], [0.4, 0.0], [0.2, 0.4], [0.0, 0.0]], atol=1e-15)
+        pack = self.pack(size=[0.5, 0.4, 0.1], shape="trapezium", bottom_width=0.5, top_width=0.3)
+        self.assertGreater(pack.top(), 0.25)
+        np.testing.assert_allclose(vessel.corners(pack)[:3], [[0.25, 0.25], [0.1, 0.1], [0.0, 0.0]])   # 45 degrees, to the tip
+        np.testing.assert_allclose(vessel.corners(pack)[3:, 0], 0.5 - vessel.corners(pack)[2::-1, 0])
 
     def test_of_triangles_the_lines_in_the_plane(self):
         points = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])

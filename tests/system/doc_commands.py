@@ -38,6 +38,8 @@ COMMANDS = {
     "mpirun -n 2 build/packmpi input/tubes.toml": "--set layers.maximum=1 " + SMALL + " || test $? = 3",   # that is one layer
     "packmpi render tubes.hdf": "--size 200",
     "packmpi convert hopper.hdf --to yade": "",
+    "mpirun -n 2 build/packmpi input/hopper_2d.toml": "--set layers.maximum=1 " + SMALL + " || test $? = 3",   # that is one layer
+    "packmpi render hopper_2d.hdf": "--size 200",
     "packmpi plot pebbles.hdf --only radial lateral": "",
     "packmpi render pebbles.hdf --section -o section.png": "--size 200",
     "packmpi report pebbles.hdf": "--size 150",
@@ -104,7 +106,7 @@ COMMANDS = {
 ELSEWHERE = {"doc/tutorial.md": "user_path.py"}   # the test of that page's commands
 NEEDS = {"packmpi render": "vtk", "lmp ": "lmp", "liggghts -in": "liggghts", "yade -n": "yade"}       # passed over without it
 LEAVES = ["quickstart.hdf", "quickstart.json", "quickstart.log", "quickstart.steps.csv", "results/quickstart.hdf",
-          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.radial.png", "handover/quickstart.yade.springs", "triaxial/confined.lammps.data", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "tubes.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "part/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
+          "results/seed_2/quickstart.hdf", "night/quickstart.hdf", "pebbles.hdf", "pebbles.analysis.json", "pebbles.radial.png", "handover/quickstart.yade.springs", "triaxial/confined.lammps.data", "pebbles.lammps.data", "specimen.data", "part.data", "hopper.hdf", "hopper_2d.hdf", "tubes.hdf", "hopper.yade.py", "concrete.hdf", "concrete.csv", "higher/quickstart.hdf", "part/quickstart.hdf", "doc_made/reproduction.md", "doc_made/data/reproduction.csv",
           "doc_made/images/reproduction.png", "quickstart.analysis.json", "quickstart.density.png",
           "quickstart.html", "ro-crate-metadata.json", "quickstart.lammps.data", "porosity/quickstart.hdf", "powder/powder.hdf", "specimen/confined.hdf", "specimen/confined.lammps.data", "made/figure_4.png"]
 KEPT = ("HOME", "LANG", "LD_LIBRARY_PATH", "TMPDIR", "USER")   # of the environment; PATH is made anew

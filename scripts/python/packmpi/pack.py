@@ -82,7 +82,8 @@ class Pack:
     size            (dimension): lateral extents (under stress: where the sides have come to), then the target height H_d [m]
     lid             height of the lid [m], or None: the pack has a free surface
     shape           of the container: "box", or a round vessel, whose largest diameter the lateral extents are: "cylinder", "frustum", "sphere",
-                    "annulus"; summary has bottom_diameter and top_diameter, or inner_diameter [m]; in 2D "circle"
+                    "annulus"; summary has bottom_diameter and top_diameter, or inner_diameter [m]; in 2D "circle",
+                    "trapezium" (bottom_width and top_width), "polygon"
     position        (N, 3): centres [m]; in 2D z is 0 and y is upward
     radius          (N) [m]
     velocity        (N, 3) [m/s]

@@ -31,7 +31,7 @@ class Sheet(NamedTuple):
 
 def new_sheet(pack: Pack, pixels: int) -> Sheet:
     """An empty one, `pixels` wide, for the width of the pack and the height of its top."""
-    width, top = float(pack.size[0]), pack.top()
+    width, top = float(pack.size[0]), vessel.top(pack)
     room = pixels / DPI - STRIP - RIM
     inches = min(room, TALLEST * pixels / DPI * width / top)
     high = inches * top / width
@@ -75,6 +75,9 @@ def put_vessel(sheet: Sheet, pack: Pack) -> None:
         corners, triangles = vessel.mesh(pack)
         cuts = [[(a[0], a[2]), (b[0], b[2])] for a, b in vessel.section(corners, triangles, 0.5 * float(pack.size[1]), 1)]
         sheet.axes.add_collection(LineCollection(cuts, colors=INK, linewidths=1.6, zorder=4))
+        return
+    if pack.shape in ("trapezium", "polygon"):
+        sheet.axes.plot(*vessel.corners(pack).T, color=INK, linewidth=1.6, clip_on=False, zorder=4)
         return
     walls = vessel.outlines(pack, pack.top())
     floor = [float(line[0, 1]) for line in walls] + [0.0]   # of an annulus from the outer wall to the inner one, else to the axis

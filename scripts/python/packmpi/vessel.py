@@ -1,4 +1,4 @@
-"""The walls of vessels: bodies of revolution, circles in 2D, and meshes."""
+"""The walls of vessels: bodies of revolution, in 2D circles and polygons, and meshes."""
 import tomllib
 
 import numpy as np
@@ -20,6 +20,27 @@ def outlines(pack: Pack, top: float) -> list[Floats]:
         return [np.array(line)]
     walls = [radius] + ([0.5 * pack.summary["inner_diameter"]] if pack.shape == "annulus" else [])
     return [np.array([(0.0, r), (top, r)]) for r in walls]
+
+
+def corners(pack: Pack) -> Floats:
+    """(x, y) along the walls of a pack's trapezium, which is open above, or of its polygon, which ends where it begins [m]."""
+    width, target = float(pack.size[0]), float(pack.size[-1])
+    if pack.shape == "polygon":
+        points = np.array(tomllib.loads(pack.provenance["effective_input"])["container"]["polygon"], dtype=float)
+        return np.vstack([points, points[:1]]) - points.min(axis=0)
+    low, high, top = 0.5 * pack.summary["bottom_width"], 0.5 * pack.summary["top_width"], max(target, pack.top())
+    side = [(low, 0.0), (high, target)]
+    if high >= low and top > target:   # it goes on as wide as it is
+        side.append((high, top))
+    elif top > target:                 # up to its tip
+        top = min(top, target * low / (low - high))
+        side.append((low + (high - low) / target * top, top))
+    return np.array([(0.5 * width - x, y) for x, y in side[::-1]] + [(0.5 * width + x, y) for x, y in side])
+
+
+def top(pack: Pack) -> float:
+    """What a picture of a pack has to show [m]: of a polygon all of it."""
+    return max(pack.top(), float(corners(pack)[:, 1].max())) if pack.shape == "polygon" else pack.top()
 
 
 def radii_at(pack: Pack, height: float) -> list[float]:
@@ -75,6 +96,10 @@ def words(pack: Pack, scale: float, unit: str) -> str:
         return f"a frustum, {low:g} to {high:g} x {height:g} {unit}"
     if pack.shape == "mesh":
         return f"a mesh, {width:g} x {scale * pack.size[1]:g} x {height:g} {unit}"
+    if pack.shape == "trapezium":
+        return f"a trapezium, {scale * pack.summary['bottom_width']:g} to {scale * pack.summary['top_width']:g} x {height:g} {unit}"
+    if pack.shape == "polygon":
+        return f"a polygon, {width:g} x {height:g} {unit}"
     if pack.shape in ("sphere", "circle"):
         return f"a {pack.shape} of {width:g} {unit}, up to {height:g} {unit}"
     if pack.shape == "annulus":

@@ -1,0 +1,13 @@
+/// What stands for the walls of a convex room: one triangle a face.
+#pragma once
+#include <vector>
+
+#include "mesh/surface.hpp"
+
+namespace packmpi::mesh {
+
+/// A triangle over each face, in the order of their numbers: it has no edge inside the room. Empty if the room is not
+/// convex. Cost: O(triangles * faces).
+[[nodiscard]] std::vector<Corners> triangles_over_faces(const Surface& surface);
+
+}  // namespace packmpi::mesh
