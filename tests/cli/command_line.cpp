@@ -1,5 +1,6 @@
 // The command line as a struct: every option, every refusal.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -187,7 +188,7 @@ TEST(CommandLine, ManualAndCompletionsNameEveryOption) {
 std::string bash_offers(const std::string& words, int at) {
   const std::string script = answer({"completion", "bash"}) + "COMP_WORDS=(" + words +
                              "); COMP_CWORD=" + std::to_string(at) + "; _packmpi; echo \"${COMPREPLY[*]}\"\n";
-  const std::string path = testing::TempDir() + "packmpi_completion.bash";
+  const std::string path = testing::TempDir() + "packmpi_completion_" + std::to_string(::getpid());
   std::ofstream(path) << script;
   FILE* pipe = popen(("bash " + path).c_str(), "r");
   std::string out;

@@ -2,6 +2,7 @@
 #include "ensemble/ensemble.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -41,7 +42,7 @@ const std::string scene_text =
 class Ensembles : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_ensemble_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_ensemble_" + std::to_string(::getppid()));
 
   void SetUp() override {
     if (comm_.rank() == 0) fs::remove_all(folder_);

@@ -2,6 +2,7 @@
 #include "observe/analysis.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -311,7 +312,7 @@ TEST_F(Analysis, ARunWritesItIfAskedTo) {
       "radius = { distribution = \"uniform\", min = 0.015, max = 0.02, weighting = \"number\" }\n"
       "[layers]\nthickness = 0.1\nfraction = 0.25\nduration = 0.02\nmaximum = 2\n[jamming]\ngravity = 2.0\n";
   const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("packmpi_analysis_" + std::to_string(comm_.size()));
+      std::filesystem::path(testing::TempDir()) / ("packmpi_analysis_" + std::to_string(::getppid()));
   const std::filesystem::path file = folder / "box.analysis.json";
   Options options;
   options.folder = folder.string();

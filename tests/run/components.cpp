@@ -1,6 +1,7 @@
 // Packs of several components: shares and strata exact to a particle, on any number of ranks, in 3D and 2D.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -34,7 +35,7 @@ struct Sums {
 class Components : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_components_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_components_" + std::to_string(::getppid()));
 
   // On all ranks, and on the first alone: equal to the bit.
   Sums made(const std::string& text) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,7 @@ std::string list_of(std::int64_t count, const std::string& order) {
 class Counts : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_counts_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_counts_" + std::to_string(::getppid()));
 
   void SetUp() override {
     if (comm_.rank() == 0) fs::remove_all(folder_);

@@ -35,7 +35,7 @@ const std::string scene_text =
 class Folders : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_folders_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_folders_" + std::to_string(::getppid()));
   std::vector<std::string> changes_;  // of the scene, as --set
   std::string words_;                 // of the last error
   report::RunRecord record_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -38,7 +39,7 @@ const std::string base =
 class Start : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_start_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_start_" + std::to_string(::getppid()));
 
   void SetUp() override {
     if (comm_.rank() == 0) fs::remove_all(folder_), fs::create_directories(folder_);

@@ -1,5 +1,6 @@
 // A density to order: the same bits on any number of ranks, after a stop, and refusals before anything is written.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -30,7 +31,7 @@ const std::string scene_text =
 class Target : public ::testing::Test {
  protected:
   const comm::Comm comm_{MPI_COMM_WORLD};
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_target_" + std::to_string(comm_.size()));
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("packmpi_target_" + std::to_string(::getppid()));
   std::vector<std::string> changes_;
 
   void SetUp() override {

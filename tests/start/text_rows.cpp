@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -21,7 +22,7 @@ using ::testing::ElementsAre;
 class TextRowsOf : public ::testing::Test {
  protected:
   [[nodiscard]] std::string file(const std::string& text) const {
-    const fs::path path = fs::path(testing::TempDir()) / "packmpi_text_rows.txt";
+    const fs::path path = fs::path(testing::TempDir()) / ("packmpi_text_rows_" + std::to_string(::getpid()));
     std::ofstream(path, std::ios::binary) << text;
     return path.string();
   }
