@@ -241,6 +241,7 @@ class Page(unittest.TestCase):
             for block in blocks:
                 exec(compile(block, "doc/python.md", "exec"), names)   # pylint: disable=exec-used
         self.assertIn('container.siez 3 scene.toml:3: container.siez: unknown key; did you mean "size"?', said.getvalue())
+        self.assertIn("11610 False", said.getvalue())
         self.assertEqual(names["again"].phi_bulk, names["pack"].phi_bulk)
 
 
