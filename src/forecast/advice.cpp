@@ -53,7 +53,8 @@ void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {
   std::string words = fmt::format("particles.radius: {}; {} leaves them out, and about {:.2g} particles in their place",
                                   fines_words(*fines), keep(fines->part), fines->without);
   std::optional<scene::Fines> more = fines;
-  for (double part = step; more->without > many && part < largest_part; part += step) more = scene::fines(scene, part);
+  for (double part = fines->part + step; more->without > many && part < largest_part; part += step)
+    more = scene::fines(scene, part);
   if (more->part > fines->part)
     words += fmt::format("; {} leaves about {:.2g} in all", keep(more->part), more->without);
   warnings.push_back(words);

@@ -26,7 +26,7 @@ struct BedFraction {
 
 /// What the finest part of a grading curve by mass comes to.
 struct Fines {
-  double part = 0.05;      ///< [-] by mass
+  double part = 0.0;       ///< [-] by mass
   double diameter = 0.0;   ///< [m] below which they are
   double share = 0.0;      ///< of the particles
   double particles = 0.0;  ///< of the scene, in all

@@ -76,6 +76,15 @@ TEST_F(SlopingWalls, PushAsHertzSays) {
   expect_force(flat, {0.0, 1.3, 0.0}, {1.0, 0.0, 0.0}, depth);  // above H_d
 }
 
+input::Input sloping(int dimension, double g, double friction, bool memory) {
+  input::Input in = test::vacuum(dimension, 1.0, r, 1e-5, 2.0);
+  in.jamming.gravity = g;
+  in.contact.damping_ratio = 0.5;
+  in.contact.friction = in.contact.wall_friction = friction;
+  if (memory) in.contact.tangential = input::Tangential::mindlin;
+  return in;
+}
+
 // On a cone's wall a sphere slides with g sin(slope), and rolls with 5/7 of it, whether friction remembers or not.
 TEST_F(SlopingWalls, LetASphereSlideAndRollDown) {
   const comm::Comm comm(MPI_COMM_WORLD);
@@ -83,12 +92,7 @@ TEST_F(SlopingWalls, LetASphereSlideAndRollDown) {
   for (const double friction : {0.0, 0.6}) {
     for (const bool memory : {false, true}) {
       if (memory && friction == 0.0) continue;
-      input::Input in = test::vacuum(3, 1.0, r, 1e-5, 2.0);
-      in.jamming.gravity = g;
-      in.contact.damping_ratio = 0.5;
-      in.contact.friction = in.contact.wall_friction = friction;
-      if (memory) in.contact.tangential = input::Tangential::mindlin;
-      Bench bench(comm, in_vessel(in, VesselShape::frustum, 0.4, 2.4, 1.0));
+      Bench bench(comm, in_vessel(sloping(3, g, friction, memory), VesselShape::frustum, 0.4, 2.4, 1.0));
       const double z = 0.8, depth = std::pow(test::mass(r) * g * slope / test::hertz(r, 1.0), 2.0 / 3.0);
       const double rho = 0.2 + rise * z - (r - depth) / slope;  // its weight is on the wall from the beginning
       bench.place({1.2 + rho * 0.6, 1.2 + rho * 0.8, z}, r);
@@ -109,12 +113,7 @@ TEST_F(SlopingWalls, LetADiscSlideAndRollDown) {
   const comm::Comm comm(MPI_COMM_WORLD);
   const double g = 2.0, seconds = 0.6, slope = std::sqrt(0.5);
   for (const auto& [friction, memory] : {std::pair(0.0, false), {0.6, false}, {0.6, true}}) {
-    input::Input in = test::vacuum(2, 1.0, r, 1e-5, 2.0);
-    in.jamming.gravity = g;
-    in.contact.damping_ratio = 0.5;
-    in.contact.friction = in.contact.wall_friction = friction;
-    if (memory) in.contact.tangential = input::Tangential::mindlin;
-    Bench bench(comm, in_trapezium(in, 0.4, 2.4, 1.0));
+    Bench bench(comm, in_trapezium(sloping(2, g, friction, memory), 0.4, 2.4, 1.0));
     const double y = 0.8, depth = std::pow(test::mass(r) * g * slope / test::hertz(r, 1.0), 2.0 / 3.0);
     bench.place({1.2 + 0.2 + y - (r - depth) / slope, y, 0.0}, r);  // its weight is on the wall from the beginning
     bench.start();
