@@ -19,11 +19,11 @@ namespace {
 constexpr double rate_share = 0.1;
 // Looks whether the bed is at rest in the time that the final stage waits for it at most.
 constexpr int windows_a_wait = 50;
-// A bed that is not after four falls through H_d swings as a whole, and its contacts damp that so little that it would
-// swing for longer than all layers took. From then on particles are stopped again and again: kinetic damping, as in
-// dynamic relaxation (Cundall 1976). Stops come after 2^-5 to 2^-2 of a window and at its end, so that no swing is in
-// step with them all; then all move freely until the bed is looked at.
-constexpr int free_windows = 20;
+// The contacts of a high bed that swings as a whole damp that so little that it would swing for longer than all layers
+// took. From the look on at which it is seen to, or after four falls through H_d, particles are stopped again and
+// again: kinetic damping, as in dynamic relaxation (Cundall 1976). Stops come after 2^-5 to 2^-2 of a window and at its
+// end, so that no swing is in step with them all; then all move freely until the bed is looked at.
+constexpr int patience = 20;  // windows
 constexpr int most_halvings = 5, least_halvings = 2;
 // Looks at the criteria of stop = "settled" in the time for which they must hold.
 constexpr int looks_a_hold = 10;
@@ -72,9 +72,9 @@ struct Plan {
     }
     return done - passed + wait_window;
   }
-  [[nodiscard]] bool stops(std::int64_t done) const {
-    const std::int64_t first = steps + free_windows * wait_window;
-    return wait > 0 && done >= first && (done == first || next_stop(done - 1) == done);
+  [[nodiscard]] bool stops(const pack::PhaseProgress& now) const {
+    const std::int64_t first = now.calm_since >= 0 ? now.calm_since : steps + patience * wait_window;
+    return wait > 0 && now.done >= first && (now.done == first || next_stop(now.done - 1) == now.done);
   }
   [[nodiscard]] std::int64_t next(std::int64_t done) const {
     std::int64_t stop = std::min(done < steps ? steps : window_end(done), (done / log_every + 1) * log_every);
@@ -180,6 +180,14 @@ Settled result(const Bed& bed, const Plan& plan, bool early) {
           .early = early};
 }
 
+// Forces on particles balance, and floor and walls bear more or less than the weight: particles bounce and fall no
+// more, and the bed moves as one. Stopping particles that fall would keep them from coming to rest.
+bool swings(const observe::Rest& rest, const input::Rest& limits) {
+  constexpr double bouncing = 1e-2;  // of m g d
+  return rest.unbalanced_force < limits.unbalanced_force && rest.kinetic_energy < bouncing &&
+         std::abs(rest.support - 1.0) > limits.support;
+}
+
 // Is the part over after now.done steps? Beyond its own steps, once the bed is at rest; that is looked at in
 // windows, from whose beginning the compaction rate counts.
 bool is_over(Bed& bed, const Plan& plan) {
@@ -192,6 +200,7 @@ bool is_over(Bed& bed, const Plan& plan) {
       fmt::format("unbalanced force ratio {:.2e}, KE/(m g d) {:.2e}, support {:.4f} at step {} of the final stage",
                   rest.unbalanced_force, rest.kinetic_energy, rest.support, now.done));
   if (report::at_rest(report::judge(bed.scene, rest))) return true;
+  if (now.calm_since < 0 && swings(rest, bed.scene.in.rest)) now.calm_since = now.done;
   now.phi_before = phi_of_moving(bed);
   return false;
 }
@@ -227,7 +236,7 @@ Settled settle(Bed& bed, Attendant& attendant, Part part) {
   bool early = false;
   bool over = is_over(bed, plan);
   while (!over) {
-    if (plan.stops(now.done)) bed.stop();  // after a checkpoint of this step: a restart judges what the run judged
+    if (plan.stops(now)) bed.stop();  // after a checkpoint of this step: a restart judges what the run judged
     if (now.done == plan.rate_from) now.phi_before = phi_of_moving(bed);
     const std::int64_t next = std::min(plan.next(now.done), now.done + attendant.steps_to_look());
     bed.stepper.use({plan.stage.time_step, plan.modulus(now.done), friction});

@@ -14,6 +14,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 # Too short to come to rest, which is not asked for.
 SMALL = ("--set layers.duration=0.01 --set rest.wait=0 --set rest.unbalanced_force=1e9 --set rest.kinetic_energy=1e9 "
@@ -168,9 +169,10 @@ def environment(folder):
 def run(block, folder):
     """Runs a block's commands in one shell, which stops where one fails."""
     text = "\n".join(["set -e", *map(small, block)])
+    start = time.monotonic()
     done = subprocess.run(["bash", "--noprofile", "--norc", "-c", text], cwd=folder, env=environment(folder), text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-    print("\n".join(f"$ {small(command)}" for command in block) + f"\n{done.stdout[-1500:]}")
+    print("\n".join(f"$ {small(command)}" for command in block) + f"\n{done.stdout[-1500:]}\n{time.monotonic() - start:.1f} s")
     if done.returncode != 0:
         problems.append(f"exit code {done.returncode}: {block}: {done.stdout[-300:]}")
 
