@@ -36,7 +36,7 @@ Gains gains_of(const scene::Scene& scene, double height, double mass) {
   for (int a = 0; a < scene.container.lateral_axes(); ++a) {
     const double side = scene.in.container.size[static_cast<std::size_t>(a)];
     space *= side;
-    longest = std::max(longest, side);
+    if (asked.on_sides()) longest = std::max(longest, side);  // else no waves are sent that way
   }
   gains.density = mass / space;
   gains.modulus = compression_modulus(scene, gains.density / scene.in.particles.density, scene::mean_stress(asked));

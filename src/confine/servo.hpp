@@ -16,7 +16,7 @@ struct Gains {
   double density = 0.0;    ///< [kg/m3] of the bed
   double impedance = 0.0;  ///< [Pa s/m] sqrt(density modulus)
   double closing = 0.0;    ///< [m/s] fastest
-  double crossing = 0.0;   ///< [s] that waves take through the specimen, the longest way
+  double crossing = 0.0;   ///< [s] that waves take through the specimen, the longest way that they are sent
 };
 /// Of a bed of that height [m] and mass [kg] in the container of the scene as it was asked for: the same however far
 /// lid and sides have moved. Local, pure; same bits on any machine.
