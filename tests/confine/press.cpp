@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "confine/outcome.hpp"
+#include "confine/servo.hpp"
 #include "observe/measure.hpp"
 #include "run/confine.hpp"
 #include "support/scenes.hpp"
@@ -99,6 +100,21 @@ TEST(Press, WithoutDampingTheWorkOfTheLidIsTheEnergyOfTheBed) {
   EXPECT_GT(work, 1e-4);
   EXPECT_NEAR(gain, work, 0.02 * work);
   EXPECT_NEAR(pressed.bed.progress.energy_given, before + work, 1e-12);
+}
+
+// How long waves take counts where they are sent: through the height by a lid, and through the sides if those move.
+TEST(Press, ALidAloneDoesNotWaitForTheFloorsWidth) {
+  constexpr double height = 0.3, mass = 100.0;
+  const auto crossing = [](double width, bool sides) {
+    input::Input in = under_lid(1e-2);
+    if (sides) in.confinement->lateral = stress;
+    in.container.size[0] = width;
+    return confine::gains_of(scene::build(in), height, width * mass).crossing;
+  };
+  EXPECT_GT(crossing(1.0, false), 0.0);
+  EXPECT_EQ(crossing(8.0, false), crossing(1.0, false));
+  EXPECT_NEAR(crossing(8.0, true) / crossing(1.0, true), 8.0, 1e-9);
+  EXPECT_GT(crossing(1.0, true), 2.0 * crossing(1.0, false));
 }
 
 // The time is up before the stress is there: the run goes on to its end, and what is missing is said.
