@@ -49,6 +49,7 @@ COMMANDS = {
     "packmpi convert pebbles.hdf --to lammps --cut input/hopper.stl:unit=mm,x=300mm,y=300mm,z=450mm -o part.data": "",
     "packmpi convert pebbles.hdf --to lammps --cut cylinder:diameter=300mm,height=400mm -o specimen.data": "",
     "scripts/study/vessels.py": "--ratios 4 --seeds 1 --document none.md --results made --set layers.duration=0.01 --set rest.wait=0 --set layers.maximum=1",
+    "scripts/study/shapes.py": "--only plane --steps 0 --document none.md --results made --set layers.duration=0.01 --set rest.wait=0 --set layers.maximum=1",
     "scripts/study/vessels.py --mesh": "--seeds 1 --document none.md --results made --set layers.duration=0.01 --set rest.wait=0 --set layers.maximum=1",
     "build/packmpi check input/concrete.toml": "",
     "mpirun -n 2 build/packmpi input/concrete.toml": "--quiet",
