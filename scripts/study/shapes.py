@@ -48,6 +48,7 @@ KINDS = {   # of vessels: the scene around [container], the colour of pictures, 
         "circle of 360 mm": 'dimension = 2\nshape = "circle"\ndiameter = 0.36\nheight = 0.3',
         "polygon": f'dimension = 2\nshape = "polygon"\npolygon = {POLYGON}\nheight = 0.3'}),
 }
+HANDED = ["--set", "rest.kinetic_energy=1e-10", "--set", "rest.unbalanced_force=1e-4"]   # no loose particle rolls on (doc/rest.md)
 PIXELS = 560
 
 
@@ -64,7 +65,7 @@ def pack_of(options, kind, keys, name):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "bed.toml").write_text(re.sub(r"\[container\][^\[]*\n(?=\[)", lambda _: f"[container]\n{keys}\n", kind.scene))
-    run(folder, options.program, "bed.toml", "-q", *options.set)
+    run(folder, options.program, "bed.toml", "-q", *HANDED, *options.set)
     run(folder, options.program, "analyze", "bed.hdf")
     return folder
 
@@ -90,7 +91,7 @@ def row_of(options, words, folder):
     got, radial = summary["achieved"], radial["radial_profile"]
     core = radial.get("core", {}).get("solid_fraction")
     floor = f"{got['floor_force'] / got['weight']:.2f}" if got["floor_force"] else ""   # a sphere has none
-    moved = f"{drift_of(options, folder):.4f}" if options.steps else ""
+    moved = f"{drift_of(options, folder):.1e}" if options.steps else ""
     return (f"| {words} | {got['particles']:,} | {got['phi_bulk']:.3f} | {f'{core:.3f}' if core else ''} | "
             f"{turn(radial['from_wall'], 1, 2.0 * got['mean_radius'])} | {turn(radial['from_wall'], -1, 2.0 * got['mean_radius'])} | "
             f"{floor} | {moved} |")
@@ -99,7 +100,7 @@ def row_of(options, words, folder):
 def sheet(pictures, path):
     """Four pictures in two rows, each in the middle of its place."""
     from PIL import Image   # comes with matplotlib
-    images = [Image.open(picture).convert("RGB") for picture in pictures]
+    images = [Image.open(picture).convert("RGBA").convert("RGB") for picture in pictures]
     width, height = (max(image.size[axis] for image in images) for axis in range(2))
     whole = Image.new("RGB", (2 * width, 2 * height), "white")
     for k, image in enumerate(images):
