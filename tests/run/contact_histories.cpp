@@ -145,10 +145,12 @@ TEST_P(ContactHistories, AreTheSameBitsOnEveryRankThroughEverything) {
   EXPECT_GT(early.size(), 30U);
   const GlobalId some = both.bed.progress.count / 3, more = both.bed.progress.count / 2;
   for (const GlobalId below : {some, more}) {
+    const Histories before = told(both.alone);
     both.each([&](Bed& p) {
       p.neighborhood.freeze(p.store, below);
       p.neighborhood.rebuild(p.store);
     });
+    EXPECT_EQ(told(both.alone), before) << "freezing changes none";
     expect_same(both.bed, both.alone);
     both.steps(40);
   }
@@ -157,10 +159,12 @@ TEST_P(ContactHistories, AreTheSameBitsOnEveryRankThroughEverything) {
   Bed again(world, both.scene);
   restart(both.bed, again, more);
   expect_same(again, both.alone);
+  const Histories frozen = told(both.alone);
   both.each([](Bed& p) {
     p.neighborhood.release(p.store);
     p.neighborhood.rebuild(p.store);
   });
+  EXPECT_EQ(told(both.alone), frozen) << "nor does releasing";
   expect_same(both.bed, both.alone);
   again.neighborhood.release(again.store);
   again.neighborhood.rebuild(again.store);
