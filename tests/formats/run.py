@@ -16,6 +16,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 DIGESTS = {"bed": "195917566c828b8c", "plane": "5cf4b296f0af02e1", "rough": "3d45dd9c0459ea10"}   # of all versions: the program's bits have not changed
+RELAXATION_STEPS = {"bed": 750, "rough": 1726}   # of whole runs; some checkpoints lie in the midst of them
 PARTICLES = {"bed": 18, "plane": 8, "rough": 18}
 FILES = 5   # exit code: a file is damaged
 failures = 0
@@ -55,6 +56,8 @@ def go_on(folder: Path, command: list[str], file: Path, name: str, step: int) ->
     done = call(folder, command, "run", f"{name}.toml", "-q", "--force", "--restart", file.name)
     expect(done.returncode in (0, 3), f"run --restart {file.name}: {done.stdout}")
     expect_digest(folder, command, f"{name}.hdf", name, f"gone on from {file.name}")
+    steps = json.loads((folder / f"{name}.json").read_text())["achieved"]["relaxation_steps"]
+    expect(steps == RELAXATION_STEPS[name], f"gone on from {file.name}: {steps} steps of the final stage")
     other = call(folder, command, "run", f"{name}.toml", "-q", "--force", "--restart", file.name, "--set", "seed=2")
     expect(other.returncode == 6 and "seed: 1 before, 2 now" in other.stdout and "relaxation" not in other.stdout,
            f"another scene, {file.name}: code {other.returncode}, {other.stdout}")
