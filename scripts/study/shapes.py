@@ -10,12 +10,13 @@ import argparse
 import json
 import re
 import shutil
-import subprocess
 from types import SimpleNamespace
 
 import common
 import measuring
 from packmpi.render import pictures_of
+from settling import run
+from vessels import turns
 
 SPHERES = """fidelity = "balanced"
 [container]
@@ -52,38 +53,28 @@ HANDED = ["--set", "rest.kinetic_energy=1e-10", "--set", "rest.unbalanced_force=
 PIXELS = 560
 
 
-def run(folder, *command):
-    done = subprocess.run([str(word) for word in command], cwd=folder, env=measuring.ENVIRONMENT, text=True, capture_output=True, check=False)
-    if done.returncode not in (0, 3):   # 3: with --set, a target may be missed
-        common.fail(f"{' '.join(map(str, command))}: {done.stdout[-300:]}{done.stderr[-300:]}")
-    return done.stdout
-
-
 def pack_of(options, kind, keys, name):
     """The folder of a bed, analysed."""
     folder = options.results / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "bed.toml").write_text(re.sub(r"\[container\][^\[]*\n(?=\[)", lambda _: f"[container]\n{keys}\n", kind.scene))
-    run(folder, options.program, "bed.toml", "-q", *HANDED, *options.set)
-    run(folder, options.program, "analyze", "bed.hdf")
+    run([options.program, "bed.toml", "-q", *HANDED, *options.set], folder, folder / "packmpi.said")
+    run([options.program, "analyze", "bed.hdf"], folder, folder / "packmpi.said")
     return folder
 
 
 def drift_of(options, folder):
     """The farthest move in LAMMPS [mean diameters]."""
-    run(folder, options.program, "convert", "bed.hdf", "--to", "lammps")
-    said = run(folder, "lmp", "-in", "bed.lammps.in", "-var", "steps", options.steps)
-    return float(re.search(r"DRIFT.*?([\d.e+-]+) mean diameters", said)[1])
+    run([options.program, "convert", "bed.hdf", "--to", "lammps"], folder, folder / "packmpi.said")
+    said, _ = run(["lmp", "-in", "bed.lammps.in", "-var", "steps", options.steps], folder, folder / "lammps.said")
+    return float(re.search(r"(?m)^DRIFT.*?([\d.e+-]+) mean diameters", said)[1])
 
 
-def turn(profile, sign, diameter):
-    """Value and place [d] of the first maximum (or minimum, sign -1) of the solid fraction from the wall, by shells."""
-    values, width = profile["values"], profile["width"]
-    for k in range(1, len(values) - 1):
-        if (k + 0.5) * width > 0.25 * diameter and sign * values[k] > sign * values[k - 1] and sign * values[k] >= sign * values[k + 1]:
-            return f"{values[k]:.3f}, {(k + 0.5) * width / diameter:.2f}"
-    return ""
+def first_turns(profile, diameter):
+    """The first maximum and minimum of the solid fraction from the wall: value and place [d], a cell each."""
+    places = [(k + 0.5) * profile["width"] / diameter for k in range(len(profile["values"]))]
+    return " | ".join(f"{value:.3f}, {place:.2f}" for place, value in turns(places, profile["values"])[:2])
 
 
 def row_of(options, words, folder):
@@ -93,8 +84,7 @@ def row_of(options, words, folder):
     floor = f"{got['floor_force'] / got['weight']:.2f}" if got["floor_force"] else ""   # a sphere has none
     moved = f"{drift_of(options, folder):.1e}" if options.steps else ""
     return (f"| {words} | {got['particles']:,} | {got['phi_bulk']:.3f} | {f'{core:.3f}' if core else ''} | "
-            f"{turn(radial['from_wall'], 1, 2.0 * got['mean_radius'])} | {turn(radial['from_wall'], -1, 2.0 * got['mean_radius'])} | "
-            f"{floor} | {moved} |")
+            f"{first_turns(radial['from_wall'], 2.0 * got['mean_radius'])} | {floor} | {moved} |")
 
 
 def sheet(pictures, path):

@@ -35,8 +35,8 @@ void warn_of_softness(const scene::Scene& scene, Warnings& warnings) {
                   overlap, limit, scene::modulus_for(scene, limit, modulus)));
 }
 
-// Forces in packs have an exponential tail: the largest of n is about 1.4 log n means, 0.8 to 1.5 in beds and specimens
-// of like spheres (700 to 110,000), and overlaps are as their 2/3.
+// Forces in packs have an exponential tail: the largest of n was 0.8 to 1.5 log n times that of the mean overlap in
+// beds and specimens of like spheres (700 to 110,000), and overlaps are as their 2/3.
 void warn_of_worst_overlap(const scene::Scene& scene, Warnings& warnings) {
   constexpr double tail = 1.4, contacts_a_particle = 2.5, margin = 1.1;
   const double modulus = scene.in.particles.youngs_modulus;
@@ -48,8 +48,8 @@ void warn_of_worst_overlap(const scene::Scene& scene, Warnings& warnings) {
   const double worst = mean * std::pow(tail * std::log(contacts), 2.0 / 3.0);
   if (!(worst > limit)) return;
   warnings.push_back(
-      fmt::format("particles.youngs_modulus: the worst of about {:.1g} contacts will overlap by about {:.2g} radii, "
-                  "beyond rest.worst_overlap = {:g}: the run is likely to end with code 3; {:.2g} Pa or more would do",
+      fmt::format("particles.youngs_modulus: the worst of about {:.1g} contacts may overlap by {:.2g} radii, beyond "
+                  "rest.worst_overlap = {:g}: the run may end with code 3; {:.2g} Pa or more would do",
                   contacts, worst, limit, margin * modulus * std::pow(worst / limit, 1.5)));
 }
 

@@ -4,7 +4,8 @@
 usage: run.py FOLDER -- [mpirun -n N] packmpi
 
 NAME.pack-V.hdf and NAME.checkpoint-V.step-S.hdf are of format version V, from the scene that NAME.toml is today. A pack must be told,
-analysed and converted; a checkpoint must be told and gone on with, to the digest of the pack that its own version made of it.
+analysed and converted; a checkpoint must be told and gone on with, to the digest of the pack that
+this program makes of the scene from its beginning.
 Without its seal each is what 0.1.0 wrote, and is refused. (How a version's files are made: doc/file_format.md.)
 """
 import json
@@ -15,7 +16,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-DIGESTS = {"bed": "195917566c828b8c", "plane": "5cf4b296f0af02e1", "rough": "3d45dd9c0459ea10"}   # of all versions: the program's bits have not changed
+DIGESTS = {"bed": "195917566c828b8c", "plane": "5cf4b296f0af02e1", "rough": "3d45dd9c0459ea10"}   # of whole runs, by this program; bits of bed and plane are those of every version
 RELAXATION_STEPS = {"bed": 750, "rough": 1726}   # of whole runs; some checkpoints lie in the midst of them
 PARTICLES = {"bed": 18, "plane": 8, "rough": 18}
 FILES = 5   # exit code: a file is damaged
