@@ -3,6 +3,7 @@
 #include <mpi.h>
 #include <petscsys.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -34,6 +35,21 @@ class WithoutVariable {
   std::optional<std::string> value_;
 };
 
+/// Did a launcher (mpirun, srun) start this process? By what Open MPI, PMIx and PMI tell their processes.
+bool launched() {
+  constexpr std::array names{"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMI_RANK", "PMI_SIZE"};
+  return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+/// For Open MPI, in a program that no launcher started.
+void prepare_single_process() {
+  // No daemon beside it, unless it spawns others: a tenth of a second less.
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  // No folder of the session: all such programs of a user share one, and one that starts while another ends, and takes
+  // the folder away, does not start (one of a hundred, six side by side).
+  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+}
+
 }  // namespace
 
 void Session::start_petsc(PetscRanks ranks) {
@@ -56,9 +72,7 @@ Session::Session(int& argc, char**& argv, PetscRanks petsc) {
   int running = 0;
   MPI_Initialized(&running);
   if (running == 0) {
-    // A program that nobody started by mpirun needs no daemon of Open MPI beside it, unless it spawns others:
-    // a tenth of a second less.
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    if (!launched()) prepare_single_process();
     MPI_Init(&argc, &argv);
     owns_mpi_ = true;
   }

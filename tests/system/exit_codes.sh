@@ -66,8 +66,12 @@ expect 4 'layer 1, step [0-9]+, .* s: particle [0-9]+ overlaps .*, beyond 0.5 of
   --set fidelity=paper --set particles.youngs_modulus=1e5 --set 'layers.velocity=[0,0,-10]'
 must test ! -e blown/quickstart.hdf
 
-# The tools in Python, without mpirun: what is missing is named, with Debian's package.
+# Without mpirun, Open MPI makes no folder that such programs side by side would share, and take from each other as they end.
 mpirun=("${command[@]}")
+command=(env TMPDIR="$PWD/session" "${mpirun[-1]}")
+expect 0 'is valid' check "${tiny[@]}"
+must test ! -e session
+# The tools in Python, without mpirun: what is missing is named, with Debian's package.
 command=(env PACKMPI_PYTHON=/no/python3 "${mpirun[-1]}")
 expect 5 'packmpi plot: cannot start /no/python3: No such file.*apt-get install python3 python3-h5py' plot out/quickstart.hdf
 command=(cp "${mpirun[-1]}" alone)
