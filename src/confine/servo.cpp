@@ -38,6 +38,7 @@ Gains gains_of(const scene::Scene& scene, double height, double mass) {
     space *= side;
     if (asked.on_sides()) longest = std::max(longest, side);  // else no waves are sent that way
   }
+  if (!scene.container.is_box()) space = thickness(scene) * scene.container.volume_between(0.0, height);
   gains.density = mass / space;
   gains.modulus = compression_modulus(scene, gains.density / scene.in.particles.density, scene::mean_stress(asked));
   gains.impedance = std::sqrt(gains.density * gains.modulus);

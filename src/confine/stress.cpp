@@ -1,34 +1,37 @@
 #include "confine/stress.hpp"
 
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "dynamics/contact_law.hpp"
 #include "geometry/volume.hpp"
+#include "observe/touch.hpp"
 
 namespace packmpi::confine {
 namespace {
 
 constexpr std::size_t axes = 3;
 
-// Calls take(entry, i, wall, depth) for each particle that touches a wall.
-template <class Take>
-void each_touch(const particles::Store& store, const scene::Scene& scene, const neighbor::WallList& walls,
-                Take&& take) {
-  for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    const LocalIndex i = walls.particle[w];
-    const double distance = scene.container.plane(walls.wall[w]).distance(store.position(i));
-    if (distance < store.radius(i)) take(static_cast<std::int64_t>(w), i, walls.wall[w], distance);
-  }
+// Of round side walls that are seen from inside, up to the lid [m2].
+double mantle_area(const scene::Scene& scene) {
+  const geometry::Container& vessel = scene.container;
+  const double inner = vessel.has(geometry::Surface::inner) ? 2.0 * std::numbers::pi * vessel.core * *vessel.lid : 0.0;
+  return (vessel.wall_area(*vessel.lid) - inner) * thickness(scene);
 }
+
+// [Pa] of a force on an area that may not be there.
+double stress_of(double force, double area) { return area > 0.0 ? force / area : 0.0; }
 
 }  // namespace
 
 double thickness(const scene::Scene& scene) { return scene.container.dimension == 3 ? 1.0 : 2.0 * scene.sizes.mean(); }
 
 double area_across(const scene::Scene& scene, std::size_t axis) {
-  return volume(scene) / (axis == static_cast<std::size_t>(scene.container.vertical()) ? *scene.container.lid
-                                                                                       : scene.container.size[axis]);
+  const geometry::Container& vessel = scene.container;
+  const bool vertical = axis == static_cast<std::size_t>(vessel.vertical());
+  if (vertical && !vessel.is_box()) return vessel.area_at(*vessel.lid) * thickness(scene);
+  return volume(scene) / (vertical ? *vessel.lid : vessel.size[axis]);
 }
 
 double volume(const scene::Scene& scene) {
@@ -37,18 +40,28 @@ double volume(const scene::Scene& scene) {
 
 Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                      const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
-  std::vector<std::vector<double>> forces(2 * axes);
-  const auto add = [&](std::int64_t, LocalIndex i, neighbor::Wall wall, double) {
-    const geometry::Plane plane = scene.container.plane(wall);
+  const geometry::Container& vessel = scene.container;
+  std::vector<std::vector<double>> forces(2 * axes + 1);  // the last: on round walls
+  const auto add = [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
+    const auto number = static_cast<std::size_t>(wall);
+    if (wall == neighbor::Wall::inner || number >= geometry::most_surfaces) return;
+    const Vec3 force = dynamics::wall_contact(scene, law, store, i, at).force;  // friction has no normal part
+    if (number >= geometry::most_planes) return forces.back().push_back(-dot(force, at.normal));
+    const geometry::Plane plane = vessel.plane(wall);
     const auto axis = static_cast<std::size_t>(plane.axis);
-    // Friction on a plane has no part in it.
-    const double force = dynamics::wall_contact(scene, law, store, i, wall).force[axis];
-    forces[2 * axis + (plane.sign > 0.0 ? 1 : 0)].push_back(-plane.sign * force);
+    forces[2 * axis + (plane.sign > 0.0 ? 1 : 0)].push_back(-plane.sign * force[axis]);
   };
-  each_touch(store, scene, neighborhood.walls(), add);
+  observe::each_touching_wall(store, vessel, neighborhood.walls(), add);
   const std::vector<double> sums = comm::exact_sums(comm, forces);
+  const auto vertical = static_cast<std::size_t>(vessel.vertical());
+  const double floor = vessel.is_box() ? area_across(scene, vertical) : vessel.area_at(0.0) * thickness(scene);
+  const double mantle = vessel.has(geometry::Surface::mantle) ? mantle_area(scene) : 0.0;
   Boundary result;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(scene.container.dimension); ++a) {
+  result.low[vertical] = stress_of(sums[2 * vertical], floor);
+  result.high[vertical] = sums[2 * vertical + 1] / area_across(scene, vertical);
+  for (std::size_t a = 0; a < vertical; ++a) {
+    result.low[a] = result.high[a] = stress_of(sums.back(), mantle);
+    if (!vessel.is_box()) continue;
     result.low[a] = sums[2 * a] / area_across(scene, a);
     result.high[a] = sums[2 * a + 1] / area_across(scene, a);
   }
@@ -58,11 +71,13 @@ Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, cons
 Vec3 on_high_walls(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                    const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
   std::vector<std::vector<double>> forces(axes);
-  each_touch(store, scene, neighborhood.walls(), [&](std::int64_t, LocalIndex i, neighbor::Wall wall, double) {
+  const auto add = [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
+    if (static_cast<std::size_t>(wall) >= geometry::most_planes) return;
     const geometry::Plane plane = scene.container.plane(wall);
     const auto axis = static_cast<std::size_t>(plane.axis);
-    if (plane.sign > 0.0) forces[axis].push_back(-dynamics::wall_contact(scene, law, store, i, wall).force[axis]);
-  });
+    if (plane.sign > 0.0) forces[axis].push_back(-dynamics::wall_contact(scene, law, store, i, at).force[axis]);
+  };
+  observe::each_touching_wall(store, scene.container, neighborhood.walls(), add);
   const std::vector<double> sums = comm::exact_sums(comm, forces);
   Vec3 stress{};
   for (std::size_t a = 0; a < static_cast<std::size_t>(scene.container.dimension); ++a) {
@@ -89,13 +104,13 @@ Stress of_contacts(const comm::Comm& comm, const particles::Store& store, const 
     const Vec3 f = dynamics::pair_contact(scene, law, store, i, j, of_pairs, static_cast<std::int64_t>(p)).force;
     for (std::size_t a = 0; a < axes; ++a) terms[a].push_back(-l[a] * f[a]);
   }
-  each_touch(store, scene, neighborhood.walls(), [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, double d) {
-    const Vec3 n = scene.container.plane(wall).normal();
-    const Vec3 f = dynamics::wall_contact(scene, law, store, i, wall, of_walls, entry).force;
-    for (std::size_t a = 0; a < axes; ++a) terms[a].push_back(-d * n[a] * f[a]);
-    const double height = store.position(i)[vertical] + d * n[vertical];  // of where it touches
+  const auto touch = [&](std::int64_t entry, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
+    const Vec3 f = dynamics::wall_contact(scene, law, store, i, at, of_walls, entry).force;
+    for (std::size_t a = 0; a < axes; ++a) terms[a].push_back(-at.distance * at.normal[a] * f[a]);
+    const double height = store.position(i)[vertical] + at.distance * at.normal[vertical];  // of where it touches
     terms[axes].push_back(-height * f[vertical]);
-  });
+  };
+  observe::each_touching_wall(store, scene.container, neighborhood.walls(), touch);
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double weight = scene.in.particles.density * geometry::volume(3, store.radius(i)) * scene.in.jamming.gravity;
     terms[axes].push_back(weight * store.position(i)[vertical]);

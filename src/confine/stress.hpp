@@ -11,13 +11,15 @@ namespace packmpi::confine {
 /// A plane scene is a sheet as thick as a mean particle: its forces over lengths are stresses over that [m]; 1 in
 /// space.
 [[nodiscard]] double thickness(const scene::Scene& scene);
-/// Area [m2] of the specimen's section across an axis, and its volume [m3], between floor and lid.
+/// Area [m2] of the specimen's section across an axis, of the vertical one at the lid; and its volume [m3], between
+/// floor and lid. Lateral axes: of a box.
 [[nodiscard]] double area_across(const scene::Scene& scene, std::size_t axis);
 [[nodiscard]] double volume(const scene::Scene& scene);
 
-/// What the parts of the boundary bear [Pa], axis by axis: normal force over area. Periodic axes: 0.
+/// What the parts of the boundary bear [Pa], axis by axis: normal force over area. Periodic axes, and the sides of
+/// meshes and polygons: 0; round sides: the mean over the mantle up to the lid, for each lateral axis.
 struct Boundary {
-  Vec3 low{}, high{};  ///< vertical: floor and lid
+  Vec3 low{}, high{};  ///< vertical: floor, if it is a plane of its own, and lid
 };
 /// Collective, exact. The moving state's: damping is in it.
 [[nodiscard]] Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,

@@ -30,8 +30,10 @@ bool servoed(const Specimen& s) { return s.scene.container.lid && s.springs.of.e
 /// A floor; over it a lid, which moves by the variable `lid` [m] if servoed.
 std::string floor_and_lid(const Specimen& s, const std::string& law) {
   const char up = "xyz"[s.vertical()];
-  if (!s.has(geometry::Surface::floor)) return "";
-  std::string text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
+  std::string text;
+  if (s.has(geometry::Surface::floor)) {
+    text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
+  }
   const std::optional<double>& lid = s.scene.container.lid;
   if (!lid) return text;
   if (!servoed(s))
@@ -62,15 +64,17 @@ std::string walls(const Specimen& s) {
   return text + floor_and_lid(s, law);
 }
 
-/// Under a lid: the stress of the contacts between particles, axis by axis; LAMMPS' box is higher than the lid.
+/// Under a lid: the stress of the contacts between particles, axis by axis; LAMMPS' box is higher than the lid, and
+/// wider than a vessel of another shape.
 std::string stress_measures(const Specimen& s) {
-  if (!s.scene.container.lid) return "";
-  const char up = "xyz"[s.vertical()];
+  const geometry::Container& vessel = s.scene.container;
+  if (!vessel.lid) return "";
+  const std::string larger = vessel.is_box() ? fmt::format("({0}hi-{0}lo)/{1}", "xyz"[s.vertical()], *vessel.lid)
+                                             : fmt::format("vol/{}", vessel.volume_between(0.0, *vessel.lid));
   std::string text =
-      fmt::format("compute         pairs all pressure NULL pair\nvariable        higher equal ({0}hi-{0}lo)/{1}\n", up,
-                  *s.scene.container.lid);
+      fmt::format("compute         pairs all pressure NULL pair\nvariable        larger equal {}\n", larger);
   for (std::size_t axis = 0; axis <= s.vertical(); ++axis) {
-    text += fmt::format("variable        stress_{} equal c_pairs[{}]*v_higher\n", "xyz"[axis], axis + 1);
+    text += fmt::format("variable        stress_{} equal c_pairs[{}]*v_larger\n", "xyz"[axis], axis + 1);
   }
   return text;
 }
@@ -100,7 +104,7 @@ std::string servos(const Specimen& s) {
   std::string press;
   for (std::size_t axis = 0; s.scene.in.confinement->on_sides() && axis < s.vertical(); ++axis) {
     if (!s.periodic(axis)) continue;
-    press += fmt::format(" {0} $(v_stress_{0}/v_higher) $(v_stress_{0}/v_higher) $(200*dt)", "xyz"[axis]);
+    press += fmt::format(" {0} $(v_stress_{0}/v_larger) $(v_stress_{0}/v_larger) $(200*dt)", "xyz"[axis]);
   }
   if (press.empty()) return text;
   return text +

@@ -38,7 +38,8 @@ std::string mesh(const Specimen& s) {
   const auto box = inner_box(s);
   std::string cells, low, high;
   for (std::size_t axis = 0; axis <= s.vertical(); ++axis) {
-    const double end = axis == s.vertical() ? box[axis].high + 2.0 * s.widest : box[axis].high;
+    const bool open = axis == s.vertical() && !s.scene.container.lid;
+    const double end = open ? box[axis].high + 2.0 * s.widest : box[axis].high;
     const char* between = axis == 0 ? "" : ",";
     cells += fmt::format("{}{:.0f}", between, std::fmax(1.0, std::floor(end / (4.0 * s.widest))));
     low += fmt::format("{}0", between);

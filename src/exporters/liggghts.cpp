@@ -55,13 +55,18 @@ std::string walls(const Specimen& s) {
       "{2}{3}\n";
   const int type = kinds(s) + 1;
   std::string text;
+  const char up = "xyz"[s.vertical()];
+  if (s.scene.container.lid) {
+    text = fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s), type);
+  }
   if (s.scene.container.is_mesh()) {
-    return fmt::format(
-        "variable        surface index {0}\n"
-        "fix             surface all mesh/surface file ${{surface}} type {1}\n"
-        "fix             wall_mesh all wall/gran model hertz tangential ${{tangential}}{2} mesh n_meshes 1 meshes "
-        "surface{3}\n",
-        liggghts_word(s.beside(".stl")), type, rolling(s), limit(s));
+    return text + fmt::format(
+                      "variable        surface index {0}\n"
+                      "fix             surface all mesh/surface file ${{surface}} type {1}\n"
+                      "fix             wall_mesh all wall/gran model hertz tangential ${{tangential}}{2} mesh n_meshes "
+                      "1 meshes "
+                      "surface{3}\n",
+                      liggghts_word(s.beside(".stl")), type, rolling(s), limit(s));
   }
   const auto cylinder = [&](const char* name, double radius) {
     text += fmt::format(
@@ -75,10 +80,6 @@ std::string walls(const Specimen& s) {
     if (s.periodic(axis)) continue;
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "lo", 0.0, limit(s), rolling(s), type);
     text += fmt::format(fmt::runtime(line), "xyz"[axis], "hi", s.size[axis], limit(s), rolling(s), type);
-  }
-  const char up = "xyz"[s.vertical()];
-  if (s.scene.container.lid) {
-    text += fmt::format(fmt::runtime(line), up, "lid", *s.scene.container.lid, limit(s), rolling(s), type);
   }
   if (!s.has(geometry::Surface::floor)) return text;
   return text + fmt::format(fmt::runtime(line), up, "floor", 0.0, limit(s), rolling(s), type);

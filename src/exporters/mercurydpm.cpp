@@ -72,6 +72,10 @@ std::string walls(const Specimen& s) {
           along(axis, "-"), along(axis, ""), s.size[axis], along(axis, ""));
     }
   }
+  if (const auto& lid = s.scene.container.lid) {
+    const std::string up = along(s.vertical(), "");
+    text += fmt::format("  wall.set({0}, {1} * {0});\n  problem.wallHandler.copyAndAddObject(wall);\n", up, *lid);
+  }
   return text + fmt::format("  wall.set({}, Vec3D(0.0, 0.0, 0.0));\n  problem.wallHandler.copyAndAddObject(wall);\n",
                             along(s.vertical(), "-"));
 }

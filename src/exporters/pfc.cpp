@@ -50,6 +50,7 @@ std::string walls(const Specimen& s) {
   for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
     if (!s.periodic(axis)) text += plane(axis, 0.0) + plane(axis, s.size[axis]);
   }
+  if (s.scene.container.lid) text += plane(s.vertical(), *s.scene.container.lid);
   return text + plane(s.vertical(), 0.0);
 }
 

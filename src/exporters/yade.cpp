@@ -69,30 +69,32 @@ std::string facets_words(const std::vector<mesh::Corners>& triangles) {
 }
 
 std::string walls(const Specimen& s) {
-  if (s.scene.container.is_mesh()) return "walls = " + facets_words(facets(*s.scene.container.room));
   std::string text = "walls = []\n";
   for (const Plane& plane : planes(s)) {
     text += fmt::format("walls.append(utils.wall({}, axis={}, sense={}, material='walls'))\n", plane.at, plane.axis,
                         plane.at > 0.0 ? -1 : 1);
   }
   if (s.scene.container.is_polygon()) text += "walls += " + facets_words(facets(s));
+  if (s.scene.container.is_mesh()) text += "walls += " + facets_words(facets(*s.scene.container.room));
   return text;
+}
+
+/// How many faces of a polygon or mesh are walls, each with a body of its own; 0 where several facets are one wall.
+std::size_t faces(const geometry::Container& vessel) {
+  if (vessel.is_polygon()) return vessel.polygon->sloping().size();
+  if (!vessel.is_mesh()) return 0;
+  const auto all = static_cast<std::size_t>(vessel.room->features().edge_begin());
+  return facets(*vessel.room).size() == all ? all : 0;
 }
 
 /// Walls of the pack among the bodies of the script.
 class WallBodies {
  public:
   explicit WallBodies(const Specimen& s) : first_(s.count) {
-    if (!s.scene.container.is_mesh()) {
-      std::ranges::transform(planes(s), std::back_inserter(numbers_), &Plane::number);
-      const std::size_t sloping = s.scene.container.is_polygon() ? s.scene.container.polygon->sloping().size() : 0;
-      for (std::size_t k = 0; k < sloping; ++k) numbers_.push_back(static_cast<int>(geometry::most_surfaces + k));
-      return;
+    std::ranges::transform(planes(s), std::back_inserter(numbers_), &Plane::number);
+    for (std::size_t k = 0; k < faces(s.scene.container); ++k) {
+      numbers_.push_back(static_cast<int>(geometry::most_surfaces + k));
     }
-    const mesh::Surface& room = *s.scene.container.room;
-    numbers_.resize(static_cast<std::size_t>(room.features().edge_begin()));
-    std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(geometry::most_surfaces));
-    if (facets(room).size() != numbers_.size()) numbers_.clear();  // several are one wall
   }
   /// Its body, or the negative number of a round wall; none if no body is just this wall.
   [[nodiscard]] std::optional<std::int64_t> of(int wall) const {

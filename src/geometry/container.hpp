@@ -100,8 +100,8 @@ struct Ring {
 /// the top or under a lid, whose lateral axes end in walls or are periodic; or a body of revolution about a vertical
 /// axis, which stands in such a prism and touches its sides: a cylinder, a frustum (which goes on above H_d as a
 /// cylinder if it widens, else as the cone that it is), a sphere that is filled up to H_d, or an annulus; or what is
-/// inside a closed surface of triangles, which has neither floor nor lid of its own. In 2D there are, beside the
-/// rectangle, the circle, and convex polygons, trapezia among them.
+/// inside a closed surface of triangles, which has no floor of its own. In 2D there are, beside the rectangle, the
+/// circle, and convex polygons, trapezia among them.
 struct Container {
   int dimension = 3;
   Vec3 size{};  ///< [m] the bounding box: lateral extents, then the target height H_d; unused entries 0
@@ -158,13 +158,13 @@ struct Container {
   /// Has this container this wall? Periodic axes have none.
   [[nodiscard]] constexpr bool has(Surface surface) const {
     const auto number = static_cast<std::size_t>(surface);
+    if (surface == Surface::lid) return lid.has_value();
     if (is_mesh()) return room != nullptr && number >= most_surfaces;
     if (is_polygon()) {
       return polygon->has_plane(number) ||
              (number >= most_surfaces && number - most_surfaces < polygon->sloping().size());
     }
     if (number == 0) return shape != Shape::sphere;
-    if (surface == Surface::lid) return lid.has_value();
     if (!is_box()) {
       return surface == Surface::mantle || (surface == Surface::inner && shape == Shape::annulus) ||
              (surface == Surface::collar && shape == Shape::frustum && ends[0] < ends[1]);
@@ -210,21 +210,15 @@ struct Container {
   }
   /// How far `x` is behind a wall or the end of a periodic axis [m]; negative: inside. NaN if a coordinate is.
   [[nodiscard]] double beyond(const Vec3& x) const {
-    if (is_mesh()) return room->beyond(x);
-    if (!is_box()) {
-      const double low = has(Surface::floor) ? -plane(Surface::floor).distance(x) : -HUGE_VAL;
-      const double here = -from_sides(x);
-      return here > low || here != here ? here : low;
-    }
-    double most = -plane(Surface::floor).distance(x);
-    for (std::size_t number = 1; number <= 2 * static_cast<std::size_t>(lateral_axes()); ++number) {
-      const double here = -plane(static_cast<Surface>(number)).distance(x);
+    double most = is_mesh() ? room->beyond(x) : has(Surface::floor) ? -plane(Surface::floor).distance(x) : -HUGE_VAL;
+    const auto take = [&](double here) {
       if (here > most || here != here) most = here;
+    };
+    for (std::size_t number = 1; is_box() && number <= 2 * static_cast<std::size_t>(lateral_axes()); ++number) {
+      take(-plane(static_cast<Surface>(number)).distance(x));
     }
-    if (lid) {
-      const double here = -plane(Surface::lid).distance(x);
-      if (here > most || here != here) most = here;
-    }
+    if (!is_box() && !is_mesh()) take(-from_sides(x));
+    if (lid) take(-plane(Surface::lid).distance(x));
     return most;
   }
   /// Not of a mesh. From the nearest side wall of a round vessel or polygon [m]; negative: behind it. NaN if a

@@ -313,9 +313,11 @@ void check_target(const Case& scene) {
 void check_confinement(const Case& scene) {
   const Input& in = scene.in;
   if (!in.confinement) return;
-  if (!scene.boxed())
-    scene.refuse("confinement", "lid and walls under servo are those of a box; remove it, or give shape = \"box\"");
   const Confinement& asked = *in.confinement;
+  if (!scene.boxed() && asked.on_sides()) {
+    scene.refuse(asked.isotropic ? "confinement.isotropic" : "confinement.lateral",
+                 "the sides of this vessel do not move, those of a box do; give vertical alone, or shape = \"box\"");
+  }
   if (asked.isotropic.has_value() == asked.vertical.has_value()) {
     scene.refuse("confinement", asked.isotropic ? "has isotropic and vertical; give one of them"
                                                 : "gives no stress; give vertical, vertical and lateral, or isotropic");

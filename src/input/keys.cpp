@@ -415,10 +415,10 @@ std::vector<Key> confinement_keys() {
   const auto at = [](auto member) -> Place { return [=](Input& in) -> Slot { return &((*in.confinement).*member); }; };
   return {
     when(confined, real("confinement.vertical", at(&Confinement::vertical), pressure, above(0), "auto",
-         "Vertical stress, compression positive, that a rigid lid brings the finished pack to. Without lateral the sides stay where they are: the K0 state. Either this or isotropic is given.")),
+         "Vertical stress, compression positive, that a rigid lid brings the finished pack to. Without lateral the sides stay where they are: the K0 state, in a vessel of any shape. Either this or isotropic is given.")),
     when(confined, real("confinement.lateral", at(&Confinement::lateral), pressure, above(0), "auto",
-         "Lateral stress: walls, or the periods of periodic axes, move until it is there. Only with vertical.")),
-    when(confined, real("confinement.isotropic", at(&Confinement::isotropic), pressure, above(0), "auto", "The same stress on all sides.")),
+         "Lateral stress: walls of a box, or the periods of periodic axes, move until it is there. Only with vertical.")),
+    when(confined, real("confinement.isotropic", at(&Confinement::isotropic), pressure, above(0), "auto", "The same stress on all sides of a box.")),
     when(confined, real("confinement.tolerance", at(&Confinement::tolerance), ratio, Range{0, 0.5, true, false}, "0.01",
          "What the stress on the boundary, and that of the contacts, may differ by, over the stress asked for.")),
     when(confined, real("confinement.wait", at(&Confinement::wait), time, above(0), "auto",

@@ -127,8 +127,8 @@ void Neighborhood::build_pairs(const particles::Store& store, std::optional<doub
 void Neighborhood::build_walls(const particles::Store& store) {
   walls_.particle.clear();
   walls_.wall.clear();
-  if (scene_->container.is_mesh()) return build_features(store);
   const double walls_move = scene_->in.confinement ? 0.5 * scene_->skin : 0.0;
+  if (scene_->container.is_mesh()) return build_features(store, walls_move);
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double range = extent_[static_cast<std::size_t>(i)] + walls_move;
     scene_->container.near_walls(store.position(i), range, [&](Wall wall, double) {
@@ -138,15 +138,22 @@ void Neighborhood::build_walls(const particles::Store& store) {
   }
 }
 
-// The faces, edges and corners of a mesh.
-void Neighborhood::build_features(const particles::Store& store) {
+// The lid, and the faces, edges and corners of a mesh.
+void Neighborhood::build_features(const particles::Store& store, double lid_moves) {
   const geometry::Container& vessel = scene_->container;
   walls_.near.clear();
   walls_.near_begin.assign(1, 0);
   mesh::NearFeatures found;
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    vessel.room->near(store.position(i), extent_[static_cast<std::size_t>(i)], vessel.behind, found);
+    const Vec3 x = store.position(i);
+    const double extent = extent_[static_cast<std::size_t>(i)];
     const auto before = static_cast<std::int32_t>(walls_.near.size());
+    if (vessel.lid && vessel.plane(Wall::lid).distance(x) < extent + lid_moves) {
+      walls_.particle.push_back(i);
+      walls_.wall.push_back(Wall::lid);
+      walls_.near_begin.push_back(before);
+    }
+    vessel.room->near(x, extent, vessel.behind, found);
     walls_.near.insert(walls_.near.end(), found.triangles.begin(), found.triangles.end());
     for (std::size_t k = 0; k < found.feature.size(); ++k) {
       walls_.particle.push_back(i);

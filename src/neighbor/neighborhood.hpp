@@ -130,7 +130,7 @@ class Neighborhood {
   void find_runs(int c, std::size_t k, std::vector<Run>& runs) const;
   void build_pairs(const particles::Store& store, std::optional<double> cutoff, PairList& list);
   void build_walls(const particles::Store& store);
-  void build_features(const particles::Store& store);
+  void build_features(const particles::Store& store, double lid_moves);
   [[nodiscard]] double least_slack(const particles::Store& store) const;  // this rank's [m]
 
   const comm::Comm* comm_;

@@ -1,4 +1,4 @@
-// What each particle touches of a mesh or a polygon.
+// What each particle touches of a mesh or a polygon, and of a lid on them.
 #include <algorithm>
 #include <cmath>
 
@@ -108,6 +108,10 @@ void Neighborhood::face_walls(const particles::Store& store) {
     const double* x = store.record(i);
     mine.r = store.radius(i);
     bool touched = false;
+    if (walls_.wall[mine.begin] == Wall::lid) {  // the first of its entries, and no part of the mesh
+      walls_.facing[mine.begin] = vessel.facing(Wall::lid, store.position(i));
+      ++mine.begin;
+    }
     for (mine.end = mine.begin; mine.end < entries && walls_.particle[mine.end] == i; ++mine.end) {
       const std::size_t k = mine.end;
       const auto feature =

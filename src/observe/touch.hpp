@@ -1,4 +1,4 @@
-/// Where two particles, or a particle and a wall, touch. Private to this module.
+/// Where two particles, or a particle and a wall, touch.
 #pragma once
 #include <algorithm>
 #include <cmath>

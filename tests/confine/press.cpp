@@ -2,13 +2,17 @@
 // any number of ranks.
 #include "confine/press.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "confine/outcome.hpp"
 #include "confine/servo.hpp"
+#include "input/read.hpp"
 #include "observe/measure.hpp"
 #include "run/confine.hpp"
 #include "support/scenes.hpp"
@@ -85,6 +89,89 @@ TEST(Press, AColumnUnderTheLidIsAsHighAsHertzSays) {
     EXPECT_TRUE(pressed.bed.progress.confined.over);
     EXPECT_LT(got.seconds, 60.0);
   }
+}
+
+// A vessel, where a column stands in it, and the area of a lid at a height [m2]; of a plane one it is as deep as a
+// particle.
+struct Vessel {
+  const char* name;
+  const char* keys;
+  Vec3 foot;
+  double (*area)(double height);
+};
+constexpr double pi = std::numbers::pi;
+const Vessel vessels[] = {
+    {"cylinder", "diameter = 1.0", {0.5, 0.5, 0.0}, [](double) { return pi * 0.25; }},
+    {"annulus", "diameter = 1.0\ninner_diameter = 0.2", {0.8, 0.5, 0.0}, [](double) { return pi * (0.25 - 0.01); }},
+    {"frustum",
+     "bottom_diameter = 0.8\ntop_diameter = 1.0",
+     {0.5, 0.5, 0.0},
+     [](double h) { return pi * std::pow(0.4 + 0.1 * h / 0.9, 2.0); }},
+    {"sphere", "diameter = 1.0", {0.5, 0.5, 0.0}, [](double h) { return pi * h * (1.0 - h); }},
+    {"prism", "polygon = [[0, 0], [1, 0], [0.5, 1]]", {0.5, 0.3, 0.0}, [](double) { return 0.5; }},
+    {"circle",
+     "dimension = 2\ndiameter = 1.0",
+     {0.5, 0.0, 0.0},
+     [](double h) { return 2.0 * r * 2.0 * std::sqrt(h * (1.0 - h)); }},
+    {"trapezium",
+     "dimension = 2\nbottom_width = 0.8\ntop_width = 1.0",
+     {0.5, 0.0, 0.0},
+     [](double h) { return 2.0 * r * (0.8 + 0.2 * h / 0.9); }},
+};
+
+input::Input in_vessel(const Vessel& vessel) {
+  const std::string text = fmt::format(
+      "[container]\nshape = \"{}\"\nheight = 0.9\n{}\n[particles]\ndensity = 1000\nyoungs_modulus = 1e8\n"
+      "poisson_ratio = 0.25\nradius = {{ distribution = \"equal\", value = {} }}\n[layers]\nthickness = 0.2\n"
+      "fraction = 0.2\n[contact]\nfriction = 0\n[jamming]\ngravity = {}\n[confinement]\nvertical = {}\ntolerance = "
+      "1e-7\n",
+      vessel.name, vessel.keys, r, gravity, stress);
+  return input::parse(text, vessel.name, {});
+}
+
+// What the lid presses a column with is the stress over its own area there, whatever the vessel.
+TEST(Press, ALidFitsEveryVessel) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  for (const Vessel& vessel : vessels) {
+    SCOPED_TRACE(vessel.name);
+    Pressed pressed(comm, in_vessel(vessel), 0);
+    const auto up = static_cast<std::size_t>(pressed.scene.container.vertical());
+    for (int k = 0; k < 3; ++k) {
+      Vec3 x = vessel.foot;
+      x[up] = r + 2.0 * r * k;
+      pressed.place(x);
+    }
+    pressed.bed.neighborhood.rebuild(pressed.bed.store);
+    confine_bed(pressed.bed, pressed.nobody);
+    const confine::Outcome got = pressed.outcome();
+    const double each = stress * vessel.area(got.lid), w = weight();
+    const double height = 6.0 * r - hertz(each, true) - hertz(each + w, false) - hertz(each + 2.0 * w, false) -
+                          hertz(each + 3.0 * w, true);
+    EXPECT_NEAR(got.lid, height, 1e-8);
+    EXPECT_NEAR(got.on_lid, stress, 1e-5);
+    EXPECT_LE(got.worst(), 1e-7);
+  }
+}
+
+// Four spheres pressed into the wall of a cylinder: on its area up to the lid, and in the stress of the contacts.
+TEST(Press, TheStressOnARoundWallIsTheMeanOverIt) {
+  const comm::Comm comm(MPI_COMM_WORLD);
+  Pressed pressed(comm, in_vessel(vessels[0]), 0);
+  constexpr double deep = 1e-4;
+  for (const auto& [x, y] : {std::array{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+    pressed.place({0.5 + x * (0.5 - r + deep), 0.5 + y * (0.5 - r + deep), 0.2});
+  }
+  confine::State& now = pressed.bed.progress.confined;
+  now = confine::begin(pressed.scene, 0.4);
+  confine::apply(now, pressed.scene.container);
+  pressed.bed.neighborhood.rebuild(pressed.bed.store);
+  const double force = 4.0 / 3.0 * 1e8 / (1.0 - 0.0625) * std::sqrt(r) * std::pow(deep, 1.5);
+  const confine::Outcome got = pressed.outcome();
+  ASSERT_EQ(got.on_sides.size(), 2U);
+  for (const double side : got.on_sides) EXPECT_NEAR(side, 4.0 * force / (2.0 * pi * 0.5 * 0.4), 1e-9 * force);
+  const double volume = pi * 0.25 * 0.4;
+  for (const int a : {0, 1}) EXPECT_NEAR(got.of_contacts.at(a), 2.0 * (r - deep) * force / volume, 1e-9 * force);
+  EXPECT_EQ(got.on_lid, 0.0);
 }
 
 // Nothing but the lid takes or gives energy: its work is what the particles have more of.

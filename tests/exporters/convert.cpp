@@ -44,6 +44,7 @@ class Convert : public ::testing::Test {
   comm::Comm comm_{MPI_COMM_WORLD};
   comm::Comm alone_{MPI_COMM_SELF};
   Folder folder_{comm_};
+  confine::Outcome confined_ = {};  ///< of the packs that are made
 
   /// A pack of made-up particles in folder_; its path.
   std::string make_pack(std::size_t count, int dimension, const std::string& boundary) {
@@ -59,6 +60,7 @@ class Convert : public ::testing::Test {
     RunRecord record = testing::some_record(dimension, 1);
     record.effective_input = input::parse(scene, "scene", {}).effective;
     record.seed = 7;
+    record.confined = confined_;
     const std::string path = folder_.file("sample.hdf");
     write_pack(comm_, path, parts.view(static_cast<bool>(keep)), record);
     return path;
@@ -438,6 +440,39 @@ TEST_F(Convert, WallsOfVesselsAreThoseThatACodeHas) {
                        "from the axis of the annulus"));
 }
 
+// Every code that gets walls gets the lid, too: of a box, of a round vessel and of a mesh.
+TEST_F(Convert, ALidIsCarried) {
+  confined_.on = true;
+  confined_.lid = 9.5;
+  confined_.size = confined_.on_sides = {12.0, 12.0};
+  confined_.of_contacts = {1.0, 1.0, 1.0};
+  const std::string stress = "[contact]\ntangential = \"mindlin\"\n[confinement]\nvertical = 100.0\n";
+  const std::map<std::string, std::string> lids{
+      {"lammps", "region          lid plane 0 0 9.5 0 0 -1 move"},
+      {"liggghts", "wall_zlid all wall/gran"},
+      {"yade", "utils.wall(9.5, axis=2, sense=-1"},
+      {"pfc", "wall generate plane position 0 0 9.5 dip 0"},
+      {"mercurydpm", "wall.set(Vec3D(0.0, 0.0, 1.0), 9.5 * Vec3D(0.0, 0.0, 1.0))"},
+      {"lethe", " : 12,12,9.5 : true"}};
+  const std::array<std::string, 3> vessels{
+      "size = [12.0, 12.0, 0.6]\n", "shape = \"cylinder\"\ndiameter = 12.0\nheight = 0.6\n",
+      "shape = \"prism\"\npolygon = [[0, 0], [12, 0], [12, 12], [0, 12]]\nheight = 10\n"};
+  for (const std::string& vessel : vessels) {
+    SCOPED_TRACE(vessel);
+    std::string scene = scene_text(3, "\"wall\", \"wall\"") + stress;
+    const std::size_t begin = scene.find("dimension"), end = scene.find("[particles]");
+    const std::string pack = make_pack_of(100, 3, scene.replace(begin, end - begin, vessel));
+    const bool box = &vessel == &vessels[0], mesh = &vessel == &vessels[2];
+    for (const auto& [code, words] : lids) {
+      if (mesh && code != "liggghts" && code != "yade") continue;  // the others have no meshes
+      if (!box && code == "lethe") continue;                       // nor a cylinder of its own
+      const std::string text =
+          contents(convert_pack(comm_, {.pack = pack, .format = code, .force = true}).files.at(code == "pfc" ? 0 : 1));
+      EXPECT_TRUE(contains(text, words)) << code << "\n" << text;
+    }
+  }
+}
+
 TEST_F(Convert, WallsOfVesselsIn2DAreThoseThatACodeHas) {
   const auto pack_in = [&](const std::string& vessel) {
     std::string scene = scene_text(2, "\"wall\"");
@@ -490,7 +525,7 @@ TEST_F(Convert, AMeshIsCarriedAsTriangles) {
   const std::string path = make_pack_of(50, 3, text);
   const Converted yade = convert_pack(comm_, {.pack = path, .format = "yade", .force = true});
   const std::string script = contents(yade.files.at(1));
-  EXPECT_TRUE(contains(script, "walls = [utils.facet(corners, material='walls') for corners in [\n"));
+  EXPECT_TRUE(contains(script, "walls = []\nwalls += [utils.facet(corners, material='walls') for corners in [\n"));
   const std::string facets =
       script.substr(script.find("for corners in [\n"), script.find("\n]]") - script.find("for corners in [\n"));
   EXPECT_EQ(std::ranges::count(facets, '\n'), 6) << "a facet over each side of the box: " << facets;

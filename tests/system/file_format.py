@@ -132,6 +132,15 @@ def check_steps(path, page):
     expect(len(lines) > 1 and all(line.count(",") == lines[0].count(",") for line in lines), f"{path.name}: rows")
 
 
+def check_confined(path, table, page):
+    """Under a stress the summary has what the page's paragraph on it names, beside what every pack has."""
+    paragraph = next(part for part in page.split("\n\n") if part.startswith("Under a stress"))
+    named = set(re.findall(r"`(\w+)`", paragraph)) - {"steps", "phi", "phi_bulk", "bulk"}
+    with h5py.File(path, "r") as pack:
+        there = {name for name in pack["summary"].attrs if f"/summary/@{name}" not in table}
+        expect(there == named, f"{path.name}: under a stress: {sorted(there)} in the file, {sorted(named)} on the page")
+
+
 def main():
     root, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     program = sys.argv[sys.argv.index("--") + 1:]
@@ -148,12 +157,19 @@ def main():
              "bare": (graded, ["output.contacts=false", "dynamics.rotation=false"],
                       ("/contacts", "/wall_contacts", "/particles/spin", "/VTKHDF/PointData/spin", *alone)),
              "components": (mixed, ["output.contacts=false"], ("/contacts", "/wall_contacts"))}
-    for case, (scene, sets, absent) in cases.items():
+
+    def make(case, scene, sets):
         arguments = [word for one in sets for word in ("--set", one)]
         command = [*program, str(scene), *SMALL, *arguments, "-o", str(folder / case)]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 3:
             sys.exit(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
+
+    confined = root / "input" / "confined.toml"
+    make("confined", confined, ["confinement.wait=1e-4"])
+    check_confined(folder / "confined" / f"{confined.stem}.hdf", table, page)
+    for case, (scene, sets, absent) in cases.items():
+        make(case, scene, sets)
         check_pack(folder / case / f"{scene.stem}.hdf", table, absent)
         check_json(folder / case / f"{scene.stem}.json", table, page)
         check_steps(folder / case / f"{scene.stem}.steps.csv", page)

@@ -105,8 +105,24 @@ def plate_actor(lx: float, ly: float, z: float) -> Any:
     plane.SetOrigin(0, 0, z)
     plane.SetPoint1(lx, 0, z)
     plane.SetPoint2(0, ly, z)
+    return lid_actor(plane)
+
+
+def disc_actor(centre: float, radii: list[float], z: float) -> Any:
+    """The same, round about x = y = centre; of two radii the ring between them."""
+    disc = vtk.vtkDiskSource()
+    disc.SetOuterRadius(max(radii))
+    disc.SetInnerRadius(min(radii) if len(radii) > 1 else 0.0)
+    disc.SetCircumferentialResolution(120)
+    actor = lid_actor(disc)
+    actor.SetPosition(centre, centre, z)
+    return actor
+
+
+def lid_actor(source: Any) -> Any:
+    """A lid that one looks through."""
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(plane.GetOutputPort())
+    mapper.SetInputConnection(source.GetOutputPort())
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(colors.to_rgb(LID))
@@ -152,8 +168,18 @@ def glass_actor(data: Any) -> Any:
     return actor
 
 
+def mark(pack: Pack) -> float:
+    """The height that is marked on a vessel [m]: the target, or the lid's."""
+    return float(pack.size[-1] if pack.lid is None else pack.lid)
+
+
+def mark_actor(pack: Pack, marks: Sequence[Segment]) -> Any:
+    """Lines at that height."""
+    return lines_actor(marks, TARGET, 0.0025) if pack.lid is None else lines_actor(marks, LID, 0.005)
+
+
 def mesh_actors(pack: Pack) -> list[Any]:
-    """A vessel of triangles: its sides as clear as glass, its edges, and the target height on it."""
+    """A vessel of triangles: its sides as clear as glass, its edges, and the target height or the lid on it."""
     corners, triangles = vessel.mesh(pack)
     corners = corners / extent(pack)
     points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
@@ -166,22 +192,25 @@ def mesh_actors(pack: Pack) -> list[Any]:
     data = vtk.vtkPolyData()
     data.SetPoints(points)
     data.SetPolys(cells)
-    marks = vessel.section(corners, triangles, float(pack.size[-1] / extent(pack)))
-    return [lines_actor(vessel.mesh_edges(corners, triangles), INK, 0.0015), lines_actor(marks, TARGET, 0.0025), glass_actor(data)]
+    marks = vessel.section(corners, triangles, mark(pack) / extent(pack))
+    return [lines_actor(vessel.mesh_edges(corners, triangles), INK, 0.0015), mark_actor(pack, marks), glass_actor(data)]
 
 
 def vessel_actors(pack: Pack) -> list[Any]:
-    """A round vessel: its walls, the circles where they begin and end, and the target height on them."""
+    """A round vessel: its walls, the circles where they begin and end, and the target height or the lid on them."""
     scale = 1.0 / extent(pack)
-    centre, target = 0.5 * scale * pack.size[0], scale * pack.size[-1]
+    centre = 0.5 * scale * pack.size[0]
     actors, edges, marks = [], [], []
     for line in vessel.outlines(pack, pack.top()):
         actors.append(mantle_actor(centre, scale * line))
         for z, radius in scale * (line if pack.shape == "frustum" else line[[0, -1]]):
             edges += ring(centre, max(radius, 1e-6), z)
-    for radius in vessel.radii_at(pack, float(pack.size[-1])):
-        marks += ring(centre, max(scale * radius, 1e-6), target)
-    return [lines_actor(edges, INK, 0.0015), lines_actor(marks, TARGET, 0.0025)] + actors
+    radii = [max(scale * radius, 1e-6) for radius in vessel.radii_at(pack, mark(pack))]
+    for radius in radii:
+        marks += ring(centre, radius, scale * mark(pack))
+    if pack.lid is not None:
+        actors.append(disc_actor(centre, radii, scale * pack.lid))
+    return [lines_actor(edges, INK, 0.0015), mark_actor(pack, marks)] + actors
 
 
 def container_actors(pack: Pack) -> list[Any]:

@@ -89,7 +89,12 @@ def section(points: Floats, triangles: Integers, place: float, axis: int = 2) ->
 
 
 def words(pack: Pack, scale: float, unit: str) -> str:
-    """What it is and how large: "a cylinder, 60 x 90 mm"."""
+    """What it is and how large: "a cylinder, 60 x 90 mm"; with a lid where that is, too."""
+    return shape_words(pack, scale, unit) + ("" if pack.lid is None else f", lid at {scale * pack.lid:.4g} {unit}")
+
+
+def shape_words(pack: Pack, scale: float, unit: str) -> str:
+    """Without the lid."""
     width, height = scale * pack.size[0], scale * pack.size[-1]
     if pack.shape == "frustum":
         low, high = scale * pack.summary["bottom_diameter"], scale * pack.summary["top_diameter"]
