@@ -7,15 +7,16 @@
 #include "base/elementary.hpp"
 #include "confine/stress.hpp"
 #include "scene/expectation.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::confine {
 namespace {
 
 // Bulk modulus [Pa] of a random pack of rough Hertz spheres under a pressure, by mean field (Walton 1987), and what one
-// -dimensional compression adds to it by the shear modulus.
+// -dimensional compression adds to it by the shear modulus. Of several components as if all were the most compliant.
 double compression_modulus(const scene::Scene& scene, double fraction, double pressure) {
   constexpr double contacts = 5.0;
-  const input::Particles& p = scene.in.particles;
+  const input::Particles p = scene::most_compliant(scene.in);
   const double nu = p.poisson_ratio;
   const double grain = p.youngs_modulus / (1.0 - nu * nu);
   const double square = contacts * fraction * grain / (2.0 * std::numbers::pi);
@@ -40,7 +41,9 @@ Gains gains_of(const scene::Scene& scene, double height, double mass) {
   }
   if (!scene.container.is_box()) space = thickness(scene) * scene.container.volume_between(0.0, height);
   gains.density = mass / space;
-  gains.modulus = compression_modulus(scene, gains.density / scene.in.particles.density, scene::mean_stress(asked));
+  const double fraction =
+      scene.features.mixture ? scene::expected_fraction(scene).value : gains.density / scene.in.particles.density;
+  gains.modulus = compression_modulus(scene, fraction, scene::mean_stress(asked));
   gains.impedance = std::sqrt(gains.density * gains.modulus);
   gains.closing = share * most / gains.impedance;
   gains.crossing = longest * std::sqrt(gains.density / gains.modulus);

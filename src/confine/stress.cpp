@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "dynamics/contact_law.hpp"
-#include "geometry/volume.hpp"
 #include "observe/touch.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::confine {
 namespace {
@@ -112,7 +112,7 @@ Stress of_contacts(const comm::Comm& comm, const particles::Store& store, const 
   };
   observe::each_touching_wall(store, scene.container, neighborhood.walls(), touch);
   for (LocalIndex i = 0; i < store.owned(); ++i) {
-    const double weight = scene.in.particles.density * geometry::volume(3, store.radius(i)) * scene.in.jamming.gravity;
+    const double weight = scene::mass_of(scene, store, i) * scene.in.jamming.gravity;
     terms[axes].push_back(weight * store.position(i)[vertical]);
   }
   const std::vector<double> sums = comm::exact_sums(comm, terms);

@@ -27,41 +27,75 @@ std::string contact(const Specimen& s, double share, double friction, int runs =
 /// Under a lid, without springs: servos and a while of more friction make up for them.
 bool servoed(const Specimen& s) { return s.scene.container.lid && s.springs.of.empty(); }
 
-/// A floor; over it a lid, which moves by the variable `lid` [m] if servoed.
-std::string floor_and_lid(const Specimen& s, const std::string& law) {
-  const char up = "xyz"[s.vertical()];
-  std::string text;
-  if (s.has(geometry::Surface::floor)) {
-    text = fmt::format("fix             floor all wall/gran granular {} {}plane 0 NULL\n", law, up);
-  }
-  const std::optional<double>& lid = s.scene.container.lid;
-  if (!lid) return text;
-  if (!servoed(s))
-    return text + fmt::format("fix             lid all wall/gran granular {} {}plane NULL {}\n", law, up, *lid);
-  text += s.flat() ? fmt::format("region          lid plane 0 {} 0 0 -1 0 move NULL v_lid NULL\n", *lid)
-                   : fmt::format("region          lid plane 0 0 {} 0 0 -1 move NULL NULL v_lid\n", *lid);
-  return text + fmt::format("fix             lid all wall/gran/region granular {} region lid\n", law);
-}
+/// Runs for which walls, once defined, are used: see lammps_law().
+int runs_with_walls(const Specimen& s) { return s.springs.of.empty() && !s.scene.container.lid ? 1 : 2; }
 
-std::string walls(const Specimen& s) {
+/// Who touches walls: all particles, or those of one component; `suffix` ends the names of their fixes.
+struct Group {
+  std::string name, suffix, law;
+};
+
+std::vector<Group> groups(const Specimen& s) {
   const input::Input& in = s.scene.in;
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
-  const std::string law = contact(s, share, in.contact.wall_friction, runs_with_walls(s));
+  if (!s.scene.features.mixture) return {{"all", "", contact(s, share, in.contact.wall_friction, runs_with_walls(s))}};
+  std::vector<Group> found;
+  for (int k = 0; k < kinds(s); ++k) {
+    found.push_back({fmt::format("component{}", k + 1), fmt::format("_{}", k + 1),
+                     lammps_law(s, scene::wall_material(in, k), share, runs_with_walls(s))});
+  }
+  return found;
+}
+
+/// A floor; over it a lid, which is a region that moves by the variable `lid` [m] if servoed.
+std::string floor_and_lid(const Specimen& s, const Group& of) {
+  const char up = "xyz"[s.vertical()];
+  const auto plane = [&](const char* name, const std::string& places) {
+    return fmt::format("fix             {}{} {} wall/gran granular {} {}plane {}\n", name, of.suffix, of.name, of.law,
+                       up, places);
+  };
+  std::string text = s.has(geometry::Surface::floor) ? plane("floor", "0 NULL") : "";
+  if (!s.scene.container.lid) return text;
+  if (!servoed(s)) return text + plane("lid", fmt::format("NULL {}", *s.scene.container.lid));
+  return text +
+         fmt::format("fix             lid{} {} wall/gran/region granular {} region lid\n", of.suffix, of.name, of.law);
+}
+
+std::string regions(const Specimen& s) {
   std::string text;
   if (s.round() && !s.scene.container.is_polygon()) {
     text =
         "# the law of a curved wall is there that of spheres on its curvature: overlaps differ by a share of r / R\n";
   }
-  for (const Region& region : round_regions(s)) {
-    text += region.line +
-            fmt::format("fix             wall_{0} all wall/gran/region granular {1} region {0}\n", region.name, law);
+  for (const Region& region : round_regions(s)) text += region.line;
+  if (!servoed(s)) return text;
+  const double lid = *s.scene.container.lid;
+  return text + (s.flat() ? fmt::format("region          lid plane 0 {} 0 0 -1 0 move NULL v_lid NULL\n", lid)
+                          : fmt::format("region          lid plane 0 0 {} 0 0 -1 move NULL NULL v_lid\n", lid));
+}
+
+std::string walls(const Specimen& s) {
+  std::string text = regions(s);
+  for (const Group& of : groups(s)) {
+    if (!of.suffix.empty()) text += fmt::format("group           {} type {}\n", of.name, of.suffix.substr(1));
+    for (const Region& region : round_regions(s)) {
+      text += fmt::format("fix             wall_{0}{1} {2} wall/gran/region granular {3} region {0}\n", region.name,
+                          of.suffix, of.name, of.law);
+    }
+    for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
+      if (s.periodic(axis)) continue;
+      text += fmt::format("fix             wall_{0}{1} {2} wall/gran granular {3} {0}plane 0 {4}\n", "xyz"[axis],
+                          of.suffix, of.name, of.law, s.size[axis]);
+    }
+    text += floor_and_lid(s, of);
   }
-  for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
-    if (s.periodic(axis)) continue;
-    text += fmt::format("fix             wall_{0} all wall/gran granular {1} {0}plane 0 {2}\n", "xyz"[axis], law,
-                        s.size[axis]);
-  }
-  return text + floor_and_lid(s, law);
+  return text;
+}
+
+/// The law between particles, with their friction times `rougher`.
+std::string pairs(const Specimen& s, double rougher = 1.0) {
+  if (s.scene.features.mixture) return lammps_pairs(s, rougher);
+  return fmt::format("pair_coeff      * * {}\n", contact(s, 0.5, rougher * s.scene.in.contact.friction));
 }
 
 /// Under a lid: the stress of the contacts between particles, axis by axis; LAMMPS' box is higher than the lid, and
@@ -114,11 +148,8 @@ std::string servos(const Specimen& s) {
 std::string hold(const Specimen& s) {
   if (!servoed(s)) return "";
   constexpr double rougher = 10.0;
-  const double friction = s.scene.in.contact.friction;
-  return fmt::format(
-      "variable        holding index 4000\npair_coeff      * * {}\nrun             ${{holding}}\npair_coeff      * * "
-      "{}\n",
-      contact(s, 0.5, rougher * friction), contact(s, 0.5, friction));
+  return fmt::format("variable        holding index 4000\n{}run             ${{holding}}\n{}", pairs(s, rougher),
+                     pairs(s));
 }
 
 std::string drag(const Specimen& s) {
@@ -144,8 +175,7 @@ std::string in_file(const Specimen& s) {
       "neighbor        {} bin\nneigh_modify    delay 0 every 1 check yes\n"
       "pair_style      granular\n{}",
       lammps_word(s.file), s.flat() ? 2 : 3, boundary_words(s), s.scene.skin,
-      s.scene.features.mixture ? lammps_pairs(s)
-                               : fmt::format("pair_coeff      * * {}\n", contact(s, 0.5, in.contact.friction)));
+      s.scene.features.mixture ? fmt::format("# {}\n", kinds_words(s, "type", 1)) + pairs(s) : pairs(s));
   text += fmt::format("fix             gravity all gravity {} vector {}\n", in.jamming.gravity,
                       s.flat() ? "0 -1 0" : "0 0 -1");
   text += drag(s);
@@ -166,9 +196,8 @@ std::string in_file(const Specimen& s) {
       "# LAMMPS 29 Sep 2021 takes a wall's restitution for that of its damping once more at each run: define the walls "
       "anew before another one\n"
       "{5}{1}{2}{7}{6}run             ${{steps}}\n{0}{10}",
-      report, s.scene.features.mixture ? lammps_walls(s) : walls(s),
-      s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s), servos(s),
-      hold(s), begin_to_move(s, s.step(), "set             group all omega 0 0 0\n"), watch_displacement(),
+      report, walls(s), s.flat() ? "fix             plane all enforce2d\n" : "", stress_measures(s), stress_columns(s),
+      servos(s), hold(s), begin_to_move(s, s.step(), "set             group all omega 0 0 0\n"), watch_displacement(),
       displacement_columns, drift_line(s));
   return text;
 }

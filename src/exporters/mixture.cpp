@@ -68,8 +68,6 @@ std::string restitution_word(double damping_ratio, int runs) {
 
 }  // namespace
 
-int runs_with_walls(const Specimen& s) { return s.springs.of.empty() && !s.scene.container.lid ? 1 : 2; }
-
 std::string lammps_law(const Specimen& s, const PairMaterial& of, double share, int runs) {
   constexpr double least = 1e-3, overlap = 5e-4;
   const bool history = remembers(s);
@@ -101,36 +99,14 @@ std::string lammps_law(const Specimen& s, const PairMaterial& of, double share, 
   return fmt::format("{}{}", words, limit);
 }
 
-std::string lammps_pairs(const Specimen& s) {
-  std::string text = fmt::format("# {}\n", kinds_words(s, "type", 1));
+std::string lammps_pairs(const Specimen& s, double rougher) {
+  std::string text;
   for (int a = 0; a < components(s); ++a) {
     for (int b = a; b < components(s); ++b) {
-      text += fmt::format("pair_coeff      {} {} {}\n", a + 1, b + 1,
-                          lammps_law(s, scene::pair_material(s.scene.in, a, b), 0.5));
+      PairMaterial of = scene::pair_material(s.scene.in, a, b);
+      of.friction.particles *= rougher;
+      text += fmt::format("pair_coeff      {} {} {}\n", a + 1, b + 1, lammps_law(s, of, 0.5));
     }
-  }
-  return text;
-}
-
-std::string lammps_walls(const Specimen& s) {
-  std::string text;
-  const double share = s.scene.in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
-  for (const Region& region : round_regions(s)) text += region.line;
-  for (int k = 0; k < components(s); ++k) {
-    const std::string law = lammps_law(s, scene::wall_material(s.scene.in, k), share, runs_with_walls(s));
-    text += fmt::format("group           component{0} type {0}\n", k + 1);
-    for (const Region& region : round_regions(s)) {
-      text += fmt::format("fix             wall_{2}_{0} component{0} wall/gran/region granular {1} region {2}\n", k + 1,
-                          law, region.name);
-    }
-    for (std::size_t axis = 0; axis < s.vertical() && !s.round(); ++axis) {
-      if (s.periodic(axis)) continue;
-      text += fmt::format("fix             wall_{0}_{1} component{1} wall/gran granular {2} {0}plane 0 {3}\n",
-                          "xyz"[axis], k + 1, law, s.size[axis]);
-    }
-    if (!s.has(geometry::Surface::floor)) continue;
-    text += fmt::format("fix             floor_{0} component{0} wall/gran granular {1} {2}plane 0 NULL\n", k + 1, law,
-                        "xyz"[s.vertical()]);
   }
   return text;
 }

@@ -21,11 +21,8 @@ namespace packmpi::exporters {
 /// once more at each.
 [[nodiscard]] std::string lammps_law(const Specimen& specimen, const scene::PairMaterial& of, double share,
                                      int runs = 1);
-/// Runs of the in-file once walls are there.
-[[nodiscard]] int runs_with_walls(const Specimen& specimen);
-/// LAMMPS: pair_coeff of each pair, and walls of each type.
-[[nodiscard]] std::string lammps_pairs(const Specimen& specimen);
-[[nodiscard]] std::string lammps_walls(const Specimen& specimen);
+/// LAMMPS: pair_coeff of each pair, friction times `rougher`.
+[[nodiscard]] std::string lammps_pairs(const Specimen& specimen, double rougher);
 /// LIGGGHTS: properties of the types, the last being the walls'.
 [[nodiscard]] std::string liggghts_material(const Specimen& specimen);
 /// YADE: materials m0 .., then the walls'; the arguments of MindlinPhys; and the lines that read the particles.

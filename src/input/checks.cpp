@@ -331,7 +331,10 @@ void check_confinement(const Case& scene) {
   if (in.dynamics.theta > 0.0) {
     scene.refuse("confinement", "a lid wants explicit steps; use dynamics.theta = 0, or remove it");
   }
-  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0;
+  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0 ||
+                     std::ranges::any_of(in.components, [](const Component& of) {
+                       return of.friction > 0.0 || of.wall_friction > 0.0;
+                     });
   if (rough && in.contact.tangential == Tangential::sliding) {
     scene.refuse("contact.tangential",
                  "\"sliding\" friction has no memory: under stress a pack creeps for ever; use \"mindlin\" with "

@@ -211,7 +211,6 @@ void check_mixture(const MixtureTables& tables, const Document& document, const 
          "one of them");
   if (in.target)
     refuse("target", "is of one material: friction is found for it, not for pairs of components; remove it");
-  if (in.confinement) refuse("confinement", "is of one material yet; remove it");
   if (in.dynamics.theta > 0.0) refuse("dynamics.theta", "implicit steps know one material only; use 0");
   if (in.layers.region == RegionRule::container)
     refuse("layers.region", "\"container\" thins out the last layers, which would spoil the shares; use \"open\"");

@@ -271,7 +271,8 @@ double confined_overlap(const Scene& scene) {
   constexpr double contacts = 5.0, uneven = 0.9;
   // In the plane stress is that of a sheet as thick as a mean particle: a contact bears as much as in space.
   const double fraction = expected_fraction(scene).value;
-  const double modulus = input::pair_modulus(scene.in.particles, scene.in.particles.youngs_modulus);
+  const input::Particles soft = most_compliant(scene.in);
+  const double modulus = input::pair_modulus(soft, soft.youngs_modulus);
   const double squeeze = 3.0 * std::numbers::sqrt2 * std::numbers::pi * mean_stress(*scene.in.confinement) /
                          (modulus * fraction * contacts);
   const double root = elementary::cube_root(squeeze);

@@ -19,6 +19,14 @@ double shear_compliance(const Particles& of) {
   return 2.0 * (2.0 - of.poisson_ratio) * (1.0 + of.poisson_ratio) / of.youngs_modulus;
 }
 
+// The material of which `measure` is largest; the one of a scene without components.
+template <class Measure>
+Particles most_of(const Input& in, Measure&& measure) {
+  if (in.components.empty()) return in.particles;
+  const auto of = [&](const Component& one) { return measure(one.particles); };
+  return std::ranges::max_element(in.components, {}, of)->particles;
+}
+
 const Component& component(const Input& in, int k) { return in.components[static_cast<std::size_t>(k)]; }
 
 }  // namespace
@@ -69,13 +77,10 @@ double densest(const Input& in) {
 }
 
 Particles softest(const Input& in) {
-  Particles worst = in.particles;
-  for (const Component& of : in.components) {
-    const auto strain = [](const Particles& p) { return p.density * normal_compliance(p); };
-    if (&of == &in.components.front() || strain(of.particles) > strain(worst)) worst = of.particles;
-  }
-  return worst;
+  return most_of(in, [](const Particles& p) { return p.density * normal_compliance(p); });
 }
+
+Particles most_compliant(const Input& in) { return most_of(in, normal_compliance); }
 
 Recipe recipe_of(const Scene& scene, const std::vector<double>& shares) {
   const bool number = by_number(scene), mass = scene.in.mixture.share_by == "mass";

@@ -56,6 +56,8 @@ struct PairMaterial {
 [[nodiscard]] double densest(const input::Input& in);
 /// Modulus [Pa] and density [kg/m3] of the component that overlaps most under its own weight.
 [[nodiscard]] input::Particles softest(const input::Input& in);
+/// Of the component whose contacts yield most to a force.
+[[nodiscard]] input::Particles most_compliant(const input::Input& in);
 
 /// What a stratum is made of, or all of a pack without strata.
 struct Recipe {

@@ -144,10 +144,11 @@ void check_crushing(const input::Input& in, const Scene& scene) {
   const double overlap = confined_overlap(scene);
   if (!(overlap > limit)) return;
   const double times = overlap / limit;
-  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
-                         "rest.mean_overlap = {:g}: use particles.youngs_modulus = {:.2g} Pa or more, or less stress",
-                         mean_stress(*in.confinement), overlap, limit,
-                         1.1 * in.particles.youngs_modulus * times * std::sqrt(times)));
+  refuse(in,
+         fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
+                     "rest.mean_overlap = {:g}: use {}.youngs_modulus = {:.2g} Pa or more, or less stress",
+                     mean_stress(*in.confinement), overlap, limit, in.components.empty() ? "particles" : "component",
+                     1.1 * most_compliant(in).youngs_modulus * times * std::sqrt(times)));
 }
 
 // Does any component, or pair of them, have a coefficient above zero?
