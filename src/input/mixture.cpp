@@ -209,8 +209,8 @@ void check_mixture(const MixtureTables& tables, const Document& document, const 
     fail(tables.strata.front().place, "stratum",
          "strata are laid from the floor; with [start], give the components the shares of what comes on top, or remove "
          "one of them");
-  if (in.target)
-    refuse("target", "is of one material: friction is found for it, not for pairs of components; remove it");
+  if (in.target && !in.strata.empty())
+    refuse("target", "is found on a sample of one recipe, and strata have several; remove one of them");
   if (in.dynamics.theta > 0.0) refuse("dynamics.theta", "implicit steps know one material only; use 0");
   if (in.layers.region == RegionRule::container)
     refuse("layers.region", "\"container\" thins out the last layers, which would spoil the shares; use \"open\"");

@@ -58,25 +58,38 @@ void raise(LawConstants& most, const LawConstants& c) {
   }
 }
 
+/// A stage's coefficients for a contact whose own are `of`, in the proportion that they are to those of [contact]:
+/// friction of particles and walls by one factor; resistance to rolling, where [contact] has none, by so much more.
+scene::Friction staged(const scene::Friction& of, const scene::Friction& stage, const scene::Friction& own) {
+  const double share = own.particles > 0.0 ? stage.particles / own.particles : 1.0;
+  const auto turns = [](double one, double now, double then) { return then > 0.0 ? one * (now / then) : one + now; };
+  return {share * of.particles, share * of.walls, turns(of.rolling, stage.rolling, own.rolling),
+          turns(of.twisting, stage.twisting, own.twisting)};
+}
+
 /// The tables of several components, and their largest constants. `softer`: the stage's modulus over the scene's.
-void add_mixture(const scene::Scene& scene, double softer, Law& law) {
+void add_mixture(const scene::Scene& scene, double softer, const scene::Friction& stage, Law& law) {
   const input::Input& in = scene.in;
+  const scene::Friction own = scene::own_friction(in.contact);
   const auto count = static_cast<int>(in.components.size());
   auto tables = std::make_shared<std::vector<LawConstants>>(
       static_cast<std::size_t>(scene::pair_codes + scene::wall_codes), law.pair);
-  const auto made = [&](const scene::PairMaterial& of) {
-    LawConstants c = constants(softer * of.normal_modulus, of.damping_ratio, of.friction.particles);
-    if (scene.features.memory) add_memory(softer * of.shear_modulus, of.damping_ratio, law.slip_mass, of.friction, c);
+  const auto made = [&](const scene::PairMaterial& of, double scene::Friction::*slides) {
+    const scene::Friction friction = staged(of.friction, stage, own);
+    LawConstants c = constants(softer * of.normal_modulus, of.damping_ratio, friction.*slides);
+    if (scene.features.memory) add_memory(softer * of.shear_modulus, of.damping_ratio, law.slip_mass, friction, c);
     return c;
   };
-  law.pair = law.wall = made(scene::pair_material(in, 0, 0));
+  const auto pair = [&](int a, int b) { return made(scene::pair_material(in, a, b), &scene::Friction::particles); };
+  law.pair = law.wall = pair(0, 0);
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b < count; ++b) {
       const int code = scene::code_of(a) + scene::code_of(b);
-      raise(law.pair, tables->at(static_cast<std::size_t>(code)) = made(scene::pair_material(in, a, b)));
+      raise(law.pair, tables->at(static_cast<std::size_t>(code)) = pair(a, b));
     }
     const int code = scene::pair_codes + scene::code_of(a);
-    raise(law.wall, tables->at(static_cast<std::size_t>(code)) = made(scene::wall_material(in, a)));
+    raise(law.wall,
+          tables->at(static_cast<std::size_t>(code)) = made(scene::wall_material(in, a), &scene::Friction::walls));
   }
   law.pair_table = tables->data();
   law.wall_table = tables->data() + scene::pair_codes;
@@ -118,7 +131,7 @@ Law make_law(const scene::Scene& scene, const scene::Stage& stage) {
     add_memory(shear_modulus(in.particles, modulus, 2.0), damping, law.slip_mass, friction, law.pair);
     add_memory(shear_modulus(in.particles, modulus, wall_sharing), damping, law.slip_mass, friction, law.wall);
   }
-  if (scene.features.mixture) add_mixture(scene, modulus / in.particles.youngs_modulus, law);
+  if (scene.features.mixture) add_mixture(scene, modulus / in.particles.youngs_modulus, friction, law);
   if (scene.sizes.equal()) {
     const double k = 1.0 / scene.sizes.largest();
     law.wall.reduced_radius = scene.sizes.largest();

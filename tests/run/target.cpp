@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dynamics/law.hpp"
 #include "input/read.hpp"
 #include "pack/pack.hpp"
 #include "report/judge.hpp"
@@ -12,6 +13,7 @@
 #include "run/make_pack.hpp"
 #include "run/record.hpp"
 #include "run/search.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::run {
 namespace {
@@ -110,6 +112,59 @@ TEST_F(Target, StopsAndGoesOnToTheSameBits) {
     EXPECT_EQ(record.density.key, "target.solid_fraction");
     expect_same(pack("through"), pack(where));
   }
+}
+
+// Two materials in place of the one, with friction of their own and of their pair.
+std::string of_components() {
+  std::string text = scene_text;
+  const std::size_t begin = text.find("[particles]"), end = text.find("[layers]");
+  text.erase(begin, end - begin);
+  const std::string of = "youngs_modulus = 1e7\npoisson_ratio = 0.25\nradius = { distribution = \"equal\", value = ";
+  return text +
+         "[mixture]\nshare_by = \"volume\"\n[[component]]\nname = \"a\"\nshare = 2\ndensity = 1000\nfriction = 0.3\n" +
+         of +
+         "0.01 }\n[[component]]\nname = \"b\"\nshare = 1\ndensity = 2000\nwall_friction = 0.1\nrolling_friction = "
+         "0.05\n" +
+         of + "0.008 }\n[[pair]]\ncomponents = [\"a\", \"b\"]\nfriction = 0.2\n";
+}
+
+// All coefficients of sliding by one factor; resistance to rolling, of which [contact] has none, by so much more.
+TEST_F(Target, ComponentsAreFilledInWithTheirOwnFrictionInProportion) {
+  const scene::Scene mixed = scene::build(input::parse(of_components(), "box.toml", {}));
+  const scene::Friction own = scene::own_friction(mixed.in.contact);
+  ASSERT_EQ(own.particles, 0.5);
+  scene::Stage stage = mixed.settling;
+  const dynamics::Law law = dynamics::make_law(mixed, stage);
+  stage.friction = scene::Friction{0.1, 0.1, 0.02, 0.0};
+  const dynamics::Law filling = dynamics::make_law(mixed, stage);
+  const auto pair = [](const dynamics::Law& of, int a, int b) {
+    return of.pair_table[static_cast<std::size_t>(scene::code_of(a) + scene::code_of(b))];
+  };
+  const auto wall = [](const dynamics::Law& of, int a) {
+    return of.wall_table[static_cast<std::size_t>(scene::code_of(a))];
+  };
+  EXPECT_EQ(pair(law, 0, 0).friction, 0.3);
+  EXPECT_EQ(pair(law, 0, 1).friction, 0.2);
+  EXPECT_DOUBLE_EQ(pair(filling, 0, 0).friction, 0.06);
+  EXPECT_DOUBLE_EQ(pair(filling, 0, 1).friction, 0.04);
+  EXPECT_DOUBLE_EQ(pair(filling, 1, 1).friction, 0.1);
+  EXPECT_DOUBLE_EQ(wall(filling, 1).friction, 0.02);
+  EXPECT_DOUBLE_EQ(wall(filling, 0).friction, 0.2 * wall(law, 0).friction);
+  EXPECT_DOUBLE_EQ(pair(filling, 1, 1).rolling_friction, 0.05 + 0.02);
+}
+
+TEST_F(Target, OfComponentsIsMetWithTheSameBitsAndAfterAStop) {
+  const scene::Scene mixed = scene::build(input::parse(of_components(), "box.toml", {}));
+  const report::RunRecord record = make_pack(comm_, mixed, options("mixed"));
+  EXPECT_TRUE(record.targets_met) << report::missed_words(record, "; ");
+  EXPECT_NEAR(record.phi_bulk, 0.58, 0.03);
+  EXPECT_THROW((void)make_pack(comm_, mixed, options("mixed_stopped", 500)), Error);
+  Options on = options("mixed_stopped");
+  on.restart = "auto";
+  (void)make_pack(comm_, mixed, on);
+  expect_same(pack("mixed"), pack("mixed_stopped"));
+  if (comm_.rank() == 0) (void)make_pack(comm::Comm(MPI_COMM_SELF), mixed, options("mixed_alone"));
+  expect_same(pack("mixed"), pack("mixed_alone"));
 }
 
 // A density under stress: what is judged, and what samples are tried for; the same bits after a stop under the lid.
