@@ -70,6 +70,7 @@ COMMANDS = {
     "packmpi estimate input/confined.toml --no-probe": "",
     "packmpi input/confined.toml -o specimen": "--set container.size=[0.08,0.08,0.03] --quiet",
     "packmpi input/oedometer.toml -o ring": "--set container.height=0.01 --set container.diameter=0.03 --quiet",
+    "packmpi render ring/oedometer.hdf -o oedometer.png --color contacts": "--size 200",
     "packmpi input/confined.toml --set target.solid_fraction=0.62 -o filled": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi input/confined.toml --set target.solid_fraction=0.62 --set 'target.state=\"confined\"' -o under": "--set container.size=[0.08,0.08,0.03] --set target.tolerance=0.5 --quiet",
     "packmpi convert specimen/confined.hdf --to lammps": "",
