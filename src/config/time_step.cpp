@@ -48,11 +48,29 @@ double holding_step(const Input& in, double radius, double youngs_modulus, doubl
   const double m = mass(of, radius);
   const bool spins = in.dynamics.rotation;
   const double omega = std::sqrt((spins ? 80.0 / 3.0 * tangential : 16.0 / 3.0 * (normal + 2.0 * tangential)) / m);
-  const double zeta = in.contact.damping_ratio * omega * std::sqrt((spins ? m / 7.0 : m / 2.0) / tangential);
+  const double zeta = largest_damping(in) * omega * std::sqrt((spins ? m / 7.0 : m / 2.0) / tangential);
   return 2.0 * (std::sqrt(zeta * zeta + 1.0) - zeta) / omega;
 }
 
 }  // namespace
+
+bool components_have_friction(const Input& in) {
+  const auto rough = [](const Component& of) { return of.friction > 0.0 || of.wall_friction > 0.0; };
+  return std::ranges::any_of(in.components, rough) ||
+         std::ranges::any_of(in.pairs, [](const ComponentPair& of) { return of.friction.value_or(0.0) > 0.0; });
+}
+
+bool has_friction(const Input& in) {
+  return in.contact.friction > 0.0 || in.contact.wall_friction > 0.0 || components_have_friction(in);
+}
+
+double largest_damping(const Input& in) {
+  if (in.components.empty()) return in.contact.damping_ratio;
+  double most = 0.0;
+  for (const Component& of : in.components) most = std::max(most, of.damping_ratio);
+  for (const ComponentPair& of : in.pairs) most = std::max(most, of.damping_ratio.value_or(0.0));
+  return most;
+}
 
 double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed) {
   const double x = reduced_mass * reduced_mass / (reduced_radius * reduced_modulus * reduced_modulus * speed);
@@ -68,7 +86,7 @@ double step_limit(const Input& in, double radius, double youngs_modulus, double 
   const double modulus = pair_modulus(in.particles, youngs_modulus);
   const double limit = contact_duration(0.5 * mass(in.particles, radius), 0.5 * radius, modulus, speed) / 5.0;
   // An explicit step dt of an oscillator is stable for omega dt < 2 (sqrt(xi^2 + 1) - xi): eq. (23) holds to xi = 1.
-  const double xi = std::max(in.contact.damping_ratio, 1.0);
+  const double xi = std::max(largest_damping(in), 1.0);
   return limit * ((std::sqrt(xi * xi + 1.0) - xi) / (std::sqrt(2.0) - 1.0));
 }
 

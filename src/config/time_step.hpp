@@ -11,6 +11,13 @@ namespace packmpi::input {
   return particles.density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 }
 
+/// Has any contact friction: by [contact], or of a component or a pair of them?
+[[nodiscard]] bool has_friction(const Input& in);
+/// Has any component, or pair of them, friction of its own?
+[[nodiscard]] bool components_have_friction(const Input& in);
+/// The largest ratio of damping of any contact.
+[[nodiscard]] double largest_damping(const Input& in);
+
 /// E* of a pair of particles of this modulus [Pa].
 [[nodiscard]] inline double pair_modulus(const Particles& particles, double youngs_modulus) {
   return youngs_modulus / (2.0 * (1.0 - particles.poisson_ratio * particles.poisson_ratio));

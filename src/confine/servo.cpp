@@ -21,7 +21,7 @@ double compression_modulus(const scene::Scene& scene, double fraction, double pr
   const double grain = p.youngs_modulus / (1.0 - nu * nu);
   const double square = contacts * fraction * grain / (2.0 * std::numbers::pi);
   const double bulk = elementary::cube_root(square * square * pressure / 18.0);
-  const bool rough = scene.in.contact.friction > 0.0;
+  const bool rough = scene.features.mixture ? scene.features.friction : scene.in.contact.friction > 0.0;
   const double shear = bulk * 3.0 / 5.0 * (rough ? (5.0 - 4.0 * nu) / (2.0 - nu) : 1.0);
   return bulk + 4.0 / 3.0 * shear;
 }

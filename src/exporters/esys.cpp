@@ -27,7 +27,7 @@ std::string note(const Specimen& s) {
              "damping ratio {}, restitution {}\ngravity {} m/s2\ntime step {} s\n",
              in.particles.density, in.particles.youngs_modulus, in.particles.poisson_ratio, in.contact.friction,
              in.contact.wall_friction, in.contact.damping_ratio, restitution(in.contact.damping_ratio),
-             in.jamming.gravity, s.scene.time_step);
+             in.jamming.gravity, s.step());
 }
 
 }  // namespace

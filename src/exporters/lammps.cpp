@@ -123,7 +123,7 @@ std::string stress_columns(const Specimen& s) {
 /// Servos that keep the stress of step 0, and a while in which springs that are not in the pack come back.
 std::string servos(const Specimen& s) {
   if (!servoed(s)) return "";
-  const double mass = s.volume * s.scene.in.particles.density / (s.copies[0] * s.copies[1]);
+  const double mass = s.mass / (s.copies[0] * s.copies[1]);
   const double sheet = confine::thickness(s.scene);  // in the plane LAMMPS has forces over lengths
   const double modulus = sheet * confine::gains_of(s.scene, *s.scene.container.lid, mass).modulus;
   const char up = "xyz"[s.vertical()];

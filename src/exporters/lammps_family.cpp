@@ -92,11 +92,11 @@ std::string boundary_words(const Specimen& s) {
 
 namespace {
 
-/// The sides of a polygon but its floor; a plane's normal looks into the room.
+/// The sides of a polygon but floor and lid; a plane's normal looks into the room.
 std::vector<Region> side_regions(const geometry::Container& vessel) {
   std::vector<Region> regions;
   vessel.near_walls({}, HUGE_VAL, [&](geometry::Surface wall, double) {
-    if (wall == geometry::Surface::floor) return;
+    if (wall == geometry::Surface::floor || wall == geometry::Surface::lid) return;
     const auto [distance, normal, velocity] = vessel.facing(wall, {});
     const std::string name = fmt::format("side{}", regions.size() + 1);
     regions.push_back(

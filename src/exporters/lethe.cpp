@@ -32,8 +32,8 @@ std::string mesh(const Specimen& s) {
   if (s.round()) {
     return fmt::format(
         "# not carried over: the cylinder. Give a mesh of its inside: radius {0} m about x = y = {0} m, from z = 0 to "
-        "{1} m at least\nsubsection mesh\n  set type = gmsh\n  set file name = cylinder.msh\nend\n",
-        s.radius(), inner_box(s)[2].high);
+        "{1} m{2}\nsubsection mesh\n  set type = gmsh\n  set file name = cylinder.msh\nend\n",
+        s.radius(), inner_box(s)[2].high, s.scene.container.lid ? ", where the lid is" : " at least");
   }
   const auto box = inner_box(s);
   std::string cells, low, high;
@@ -69,7 +69,7 @@ std::string periods(const Specimen& s) {
 
 std::string parameters(const Specimen& s) {
   const double g = s.scene.in.jamming.gravity;
-  const double dt = s.scene.time_step;
+  const double dt = s.step();
   std::string text = notes(s, Fluid::not_carried, "# ");
   text += fmt::format(
       "# Parameters of Lethe 1.0 for lethe-particles; names differ between versions.\n"

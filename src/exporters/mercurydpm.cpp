@@ -104,7 +104,7 @@ std::string driver(const Specimen& s) {
                     "problem.getTotalMass() << \" kg\\n\";\n"
                     "  problem.setTimeStep({0});\n  problem.setTimeMax(problem.getTime() + 200 * {0});\n"
                     "  problem.solve();\n}}\n",
-                    s.scene.time_step);
+                    s.step());
 }
 
 }  // namespace

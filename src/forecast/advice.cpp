@@ -8,6 +8,7 @@
 #include "forecast/estimate.hpp"
 #include "input/fidelity.hpp"
 #include "run/settle.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::forecast {
 namespace {
@@ -29,10 +30,10 @@ void warn_of_softness(const scene::Scene& scene, Warnings& warnings) {
   const double limit = scene.in.rest.mean_overlap;
   if (overlap <= limit) return;
   warnings.push_back(
-      fmt::format("particles.youngs_modulus: under the bed's weight particles will overlap by about {:.2g} radii "
-                  "in the mean, beyond rest.mean_overlap = {:g}: the run is going to end with code 3; {:.1e} Pa "
-                  "or more would do",
-                  overlap, limit, scene::modulus_for(scene, limit, modulus)));
+      fmt::format("{}: under the bed's weight particles will overlap by about {:.2g} radii in the mean, beyond "
+                  "rest.mean_overlap = {:g}: the run is going to end with code 3; {:.1e} Pa or more would do",
+                  scene::limiting_key(scene.in), overlap, limit,
+                  scene::modulus_for(scene, limit, modulus) * (scene::softest(scene.in).youngs_modulus / modulus)));
 }
 
 // Forces in packs have an exponential tail: the largest of n was 0.8 to 1.5 log n times that of the mean overlap in
@@ -48,9 +49,10 @@ void warn_of_worst_overlap(const scene::Scene& scene, Warnings& warnings) {
   const double worst = mean * std::pow(tail * std::log(contacts), 2.0 / 3.0);
   if (!(worst > limit)) return;
   warnings.push_back(
-      fmt::format("particles.youngs_modulus: the worst of about {:.1g} contacts may overlap by {:.2g} radii, beyond "
+      fmt::format("{}: the worst of about {:.1g} contacts may overlap by {:.2g} radii, beyond "
                   "rest.worst_overlap = {:g}: the run may end with code 3; {:.2g} Pa or more would do",
-                  contacts, worst, limit, margin * modulus * std::pow(worst / limit, 1.5)));
+                  scene::limiting_key(scene.in), contacts, worst, limit,
+                  margin * scene::limiting(scene.in).youngs_modulus * std::pow(worst / limit, 1.5)));
 }
 
 void warn_of_fines(const scene::Scene& scene, Warnings& warnings) {

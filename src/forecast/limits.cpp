@@ -28,9 +28,8 @@ report::State state_of(const input::Input& in, const std::vector<control::Trial>
 input::Input with_target(const comm::Comm& comm, const std::string& path, const input::Overrides& overrides) {
   input::Input in = input::read(comm, path, overrides);
   if (in.target) return in;
-  if (!in.components.empty()) {
-    throw Error(ExitCode::bad_input,
-                path + ": limits are found by the friction of one material, and there are several components");
+  if (!in.strata.empty()) {
+    throw Error(ExitCode::bad_input, path + ": limits are found on a sample of one recipe, and strata have several");
   }
   input::Overrides more = overrides;
   more.set.emplace_back("target.relative_density=0.5");
@@ -41,11 +40,11 @@ std::string protocol_of(const input::Input& in, const control::Sample& sample) {
   return fmt::format(
       "{}, {} seeds each, filled in layers of {:g} m at solid fraction {:g}, {:g} s each\n"
       "under gravity {:g} m/s2 with the friction below; then {:g} s and until it rests with the scene's own\n"
-      "(friction {:g}, walls {:g}, rolling {:g}, twisting {:g}); solid fractions are those of the bulk",
+      "({}friction {:g}, walls {:g}, rolling {:g}, twisting {:g}); solid fractions are those of the bulk",
       sample.whole ? "the scene itself" : fmt::format("a sample of about {:.0f} particles", sample.particles),
       run::seeds_of_extremes, in.layers.thickness, in.layers.fraction, in.layers.duration, in.jamming.gravity,
-      sample.scene.relaxation, in.contact.friction, in.contact.wall_friction, in.contact.rolling_friction,
-      in.contact.twisting_friction);
+      sample.scene.relaxation, in.components.empty() ? "" : "components' own, in proportion to ", in.contact.friction,
+      in.contact.wall_friction, in.contact.rolling_friction, in.contact.twisting_friction);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "comm/petsc.hpp"
 #include "input/grading.hpp"
 #include "input/scene_case.hpp"
+#include "input/time_step.hpp"
 #include "tables/rhythm.hpp"
 
 namespace packmpi::input {
@@ -294,7 +295,10 @@ void check_target(const Case& scene) {
                  "(fidelity = \"paper\" sets \"sliding\" unless the scene says so)");
   }
   if (!(in.contact.friction > 0.0))
-    scene.refuse("contact.friction", "a target is met by friction, which is 0 here; give some, or remove [target]");
+    scene.refuse("contact.friction",
+                 "a target is met by friction in proportion to this, and it is 0; give some, or remove [target]");
+  if (!in.components.empty() && !components_have_friction(in))
+    scene.refuse("target", "is met by friction, which no component has; give some, or remove [target]");
   if (target.most_friction <= least_filling_friction) {
     scene.refuse("target.most_friction",
                  fmt::format("{:g} is not above {:g}, the least that layers are filled in with; raise it",
@@ -331,11 +335,7 @@ void check_confinement(const Case& scene) {
   if (in.dynamics.theta > 0.0) {
     scene.refuse("confinement", "a lid wants explicit steps; use dynamics.theta = 0, or remove it");
   }
-  const bool rough = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0 ||
-                     std::ranges::any_of(in.components, [](const Component& of) {
-                       return of.friction > 0.0 || of.wall_friction > 0.0;
-                     });
-  if (rough && in.contact.tangential == Tangential::sliding) {
+  if (has_friction(in) && in.contact.tangential == Tangential::sliding) {
     scene.refuse("contact.tangential",
                  "\"sliding\" friction has no memory: under stress a pack creeps for ever; use \"mindlin\" with "
                  "[confinement] (fidelity = \"paper\" sets \"sliding\" unless the scene says so)");

@@ -58,13 +58,13 @@ void raise(LawConstants& most, const LawConstants& c) {
   }
 }
 
-/// A stage's coefficients for a contact whose own are `of`, in the proportion that they are to those of [contact]:
-/// friction of particles and walls by one factor; resistance to rolling, where [contact] has none, by so much more.
+/// A stage's coefficients for a contact whose own are `of`: sliding is multiplied by what it is of [contact]'s, and so
+/// are rolling and twisting where that is less than 1; what the stage adds to those of [contact] it adds here.
 scene::Friction staged(const scene::Friction& of, const scene::Friction& stage, const scene::Friction& own) {
   const double share = own.particles > 0.0 ? stage.particles / own.particles : 1.0;
-  const auto turns = [](double one, double now, double then) { return then > 0.0 ? one * (now / then) : one + now; };
-  return {share * of.particles, share * of.walls, turns(of.rolling, stage.rolling, own.rolling),
-          turns(of.twisting, stage.twisting, own.twisting)};
+  const double less = std::min(1.0, share);
+  return {share * of.particles, share * of.walls, less * of.rolling + (stage.rolling - less * own.rolling),
+          less * of.twisting + (stage.twisting - less * own.twisting)};
 }
 
 /// The tables of several components, and their largest constants. `softer`: the stage's modulus over the scene's.

@@ -9,6 +9,7 @@
 #include "base/voids.hpp"
 #include "input/time_step.hpp"
 #include "scene/expectation.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::report {
 namespace {
@@ -59,9 +60,9 @@ std::string why_it_moves(const scene::Scene& scene, double confined) {
 
 // Overlaps go with E^(-2/3).
 std::string how_much_harder(const scene::Scene& scene, double overlap, double limit) {
-  const double modulus = scene.in.particles.youngs_modulus * (overlap / limit) * std::sqrt(overlap / limit);
-  return fmt::format("particles are too soft for their weight: use particles.youngs_modulus = {:.1e} Pa or more",
-                     1.1 * modulus);
+  const double modulus = scene::limiting(scene.in).youngs_modulus * (overlap / limit) * std::sqrt(overlap / limit);
+  return fmt::format("particles are too soft for their {}: use {} = {:.1e} Pa or more",
+                     scene.in.confinement ? "stress" : "weight", scene::limiting_key(scene.in), 1.1 * modulus);
 }
 
 std::string words_of_limit(const Criterion& c) {

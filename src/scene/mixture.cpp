@@ -82,6 +82,17 @@ Particles softest(const Input& in) {
 
 Particles most_compliant(const Input& in) { return most_of(in, normal_compliance); }
 
+Particles limiting(const Input& in) { return in.confinement ? most_compliant(in) : softest(in); }
+
+std::string limiting_key(const Input& in) {
+  const Particles of = limiting(in);
+  const auto is = [&](const Component& one) {
+    return one.particles.youngs_modulus == of.youngs_modulus && one.particles.density == of.density;
+  };
+  const auto found = std::ranges::find_if(in.components, is);
+  return found == in.components.end() ? "particles.youngs_modulus" : "component.youngs_modulus of " + found->name;
+}
+
 Recipe recipe_of(const Scene& scene, const std::vector<double>& shares) {
   const bool number = by_number(scene), mass = scene.in.mixture.share_by == "mass";
   const int dimension = scene.container.dimension;

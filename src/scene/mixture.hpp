@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "geometry/volume.hpp"
@@ -58,6 +59,10 @@ struct PairMaterial {
 [[nodiscard]] input::Particles softest(const input::Input& in);
 /// Of the component whose contacts yield most to a force.
 [[nodiscard]] input::Particles most_compliant(const input::Input& in);
+/// The material whose overlaps are the largest: under its weight, or the stress of [confinement]; and how messages name
+/// the key of its modulus.
+[[nodiscard]] input::Particles limiting(const input::Input& in);
+[[nodiscard]] std::string limiting_key(const input::Input& in);
 
 /// What a stratum is made of, or all of a pack without strata.
 struct Recipe {

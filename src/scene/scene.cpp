@@ -45,11 +45,11 @@ double choose_time_step(const input::Input& in, const Sizes& sizes, const char* 
   const double speed = input::impact_speed(in, in.layers.thickness);
   const double limit = input::step_limit(in, sizes.mean(), youngs_modulus, speed);
   if (*asked > limit && in.dynamics.theta == 0.0) {  // implicit steps are stable beyond it
-    const bool overdamped = in.contact.damping_ratio > 1.0;
+    const double damping = input::largest_damping(in);
     refuse(in, fmt::format("{}: {:g} s is beyond the limit of eq. (23), {:.3g} s, for radius {:g} m{} and impact speed "
                            "{:.3g} m/s; use a smaller step, \"auto\", or softer particles",
                            key, *asked, limit, sizes.mean(),
-                           overdamped ? fmt::format(", damping_ratio {:g}", in.contact.damping_ratio) : "", speed));
+                           damping > 1.0 ? fmt::format(", damping_ratio {:g}", damping) : "", speed));
   }
   return *asked;
 }
@@ -144,11 +144,10 @@ void check_crushing(const input::Input& in, const Scene& scene) {
   const double overlap = confined_overlap(scene);
   if (!(overlap > limit)) return;
   const double times = overlap / limit;
-  refuse(in,
-         fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
-                     "rest.mean_overlap = {:g}: use {}.youngs_modulus = {:.2g} Pa or more, or less stress",
-                     mean_stress(*in.confinement), overlap, limit, in.components.empty() ? "particles" : "component",
-                     1.1 * most_compliant(in).youngs_modulus * times * std::sqrt(times)));
+  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
+                         "rest.mean_overlap = {:g}: use {} = {:.2g} Pa or more, or less stress",
+                         mean_stress(*in.confinement), overlap, limit, limiting_key(in),
+                         1.1 * limiting(in).youngs_modulus * times * std::sqrt(times)));
 }
 
 // Does any component, or pair of them, have a coefficient above zero?
@@ -164,8 +163,7 @@ Features features_of(const input::Input& in) {
   f.dimension = in.container.dimension;
   f.rotation = in.dynamics.rotation;
   f.mixture = in.components.size() > 1;
-  f.friction = in.contact.friction > 0.0 || in.contact.wall_friction > 0.0 || any(in, &input::Component::friction) ||
-               any(in, &input::Component::wall_friction) || any(in, &input::ComponentPair::friction);
+  f.friction = input::has_friction(in);
   f.memory = f.friction && in.contact.tangential == input::Tangential::mindlin;
   f.rolling = f.memory &&
               (in.contact.rolling_friction > 0.0 || in.contact.twisting_friction > 0.0 ||

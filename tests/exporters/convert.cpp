@@ -473,6 +473,26 @@ TEST_F(Convert, ALidIsCarried) {
   }
 }
 
+// Floor and lid of a polygon are planes of its own in LAMMPS, and each is there once.
+TEST_F(Convert, ALidOverAPolygonIsWrittenOnce) {
+  confined_.on = true;
+  confined_.lid = 9.5;
+  confined_.size = confined_.on_sides = {12.0};
+  confined_.of_contacts = {1.0, 1.0};
+  std::string scene =
+      scene_text(2, "\"wall\"") + "[contact]\ntangential = \"mindlin\"\n[confinement]\nvertical = 100.0\n";
+  const std::size_t begin = scene.find("dimension"), end = scene.find("[particles]");
+  const std::string trapezium =
+      "dimension = 2\nshape = \"trapezium\"\nbottom_width = 6.0\ntop_width = 12.0\nheight = 1.0\n";
+  const std::string pack = make_pack_of(100, 2, scene.replace(begin, end - begin, trapezium));
+  const std::string text = contents(convert_pack(comm_, {.pack = pack, .format = "lammps", .force = true}).files.at(1));
+  std::size_t lids = 0;
+  for (std::size_t at = text.find(" 9.5 0 0 -1 0"); at != std::string::npos; at = text.find(" 9.5 0 0 -1 0", at + 1))
+    ++lids;
+  EXPECT_EQ(lids, 1U) << text;
+  EXPECT_TRUE(contains(text, "region          lid plane 0 9.5 0 0 -1 0 move"));
+}
+
 TEST_F(Convert, WallsOfVesselsIn2DAreThoseThatACodeHas) {
   const auto pack_in = [&](const std::string& vessel) {
     std::string scene = scene_text(2, "\"wall\"");

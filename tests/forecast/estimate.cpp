@@ -14,6 +14,7 @@
 
 #include "disk/sealed_file.hpp"
 #include "forecast/advice.hpp"
+#include "forecast/limits.hpp"
 #include "input/read.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
@@ -393,6 +394,60 @@ TEST_F(Estimates, TheProbeRunsAndTheJsonSaysIt) {
   EXPECT_EQ(json["files"]["pack"], e.pack_bytes);
   EXPECT_EQ(json["wall_seconds"], e.seconds);
   EXPECT_THAT(report::to_table(e), HasSubstr("wall time"));
+}
+
+// Several components have limits, too; strata, which have several recipes, do not.
+TEST_F(Estimates, LimitsOfSeveralComponents) {
+  const std::string mixed = R"(
+[container]
+size = [0.12, 0.12, 0.08]
+[layers]
+thickness = 0.06
+fraction = 0.2
+duration = 0.12
+[jamming]
+gravity = 9.81
+[contact]
+tangential = "mindlin"
+friction = 0.4
+[dynamics]
+relaxation = 0.01
+[rest]
+wait = 0
+[mixture]
+share_by = "mass"
+[[component]]
+name = "a"
+share = 1
+density = 1000
+youngs_modulus = 1e7
+poisson_ratio = 0.25
+radius = { distribution = "equal", value = 0.01 }
+[[component]]
+name = "b"
+share = 1
+density = 2000
+youngs_modulus = 1e7
+poisson_ratio = 0.25
+radius = { distribution = "equal", value = 0.008 }
+)";
+  const fs::path path = fs::path(testing::TempDir()) / fmt::format("mixed_{}.toml", ::getppid());
+  const auto of_text = [&](const std::string& text) {
+    if (comm_.rank() == 0) std::ofstream(path) << text;
+    comm_.barrier();
+    return limits(comm_, path.string(), {});
+  };
+  const report::LimitsReport found = of_text(mixed);
+  EXPECT_EQ(found.loosest.fractions.size(), found.seeds.size());
+  EXPECT_GT(found.loosest.fractions.front(), 0.3);
+  EXPECT_THAT(found.protocol, HasSubstr("components' own, in proportion to friction 0.4"));
+  comm_.barrier();
+  try {
+    of_text(mixed + "[[stratum]]\nname = \"low\"\ntop = 0.04\nshares = { a = 1 }\n[[stratum]]\nname = \"high\"\n");
+    FAIL() << "strata have no limits";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("strata have several"));
+  }
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ std::string of_components() {
          of + "0.008 }\n[[pair]]\ncomponents = [\"a\", \"b\"]\nfriction = 0.2\n";
 }
 
-// All coefficients of sliding by one factor; resistance to rolling, of which [contact] has none, by so much more.
+// All coefficients by one factor; and what the stage has of rolling beyond [contact]'s part is added.
 TEST_F(Target, ComponentsAreFilledInWithTheirOwnFrictionInProportion) {
   const scene::Scene mixed = scene::build(input::parse(of_components(), "box.toml", {}));
   const scene::Friction own = scene::own_friction(mixed.in.contact);
@@ -150,7 +150,7 @@ TEST_F(Target, ComponentsAreFilledInWithTheirOwnFrictionInProportion) {
   EXPECT_DOUBLE_EQ(pair(filling, 1, 1).friction, 0.1);
   EXPECT_DOUBLE_EQ(wall(filling, 1).friction, 0.02);
   EXPECT_DOUBLE_EQ(wall(filling, 0).friction, 0.2 * wall(law, 0).friction);
-  EXPECT_DOUBLE_EQ(pair(filling, 1, 1).rolling_friction, 0.05 + 0.02);
+  EXPECT_DOUBLE_EQ(pair(filling, 1, 1).rolling_friction, 0.2 * 0.05 + 0.02);
 }
 
 TEST_F(Target, OfComponentsIsMetWithTheSameBitsAndAfterAStop) {

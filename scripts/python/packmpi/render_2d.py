@@ -59,7 +59,7 @@ def put_heights(sheet: Sheet, pack: Pack) -> None:
     if pack.lid is None:
         sheet.axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
     else:
-        sheet.axes.plot([0, width], [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=False, zorder=5)
+        sheet.axes.plot(vessel.span(pack, pack.lid), [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=False, zorder=5)
 
 
 def put_box(sheet: Sheet, pack: Pack) -> None:

@@ -48,6 +48,20 @@ def radii_at(pack: Pack, height: float) -> list[float]:
     return [float(np.interp(height, line[:, 0], line[:, 1])) for line in outlines(pack, max(height, float(pack.size[-1]), pack.top()))]
 
 
+def span(pack: Pack, height: float) -> tuple[float, float]:
+    """From where to where a plane picture of a pack's vessel goes at a height [m]; of a mesh the whole width."""
+    width = float(pack.size[0])
+    if pack.shape in ("trapezium", "polygon"):
+        line = corners(pack)
+        cuts = [a[0] + (height - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+                for a, b in zip(line[:-1], line[1:]) if a[1] != b[1] and min(a[1], b[1]) <= height <= max(a[1], b[1])]
+        return (min(cuts), max(cuts)) if cuts else (0.0, width)
+    if pack.shape in ("box", "mesh"):
+        return 0.0, width
+    radius = max(radii_at(pack, height))
+    return 0.5 * width - radius, 0.5 * width + radius
+
+
 def mesh(pack: Pack) -> tuple[Floats, Integers]:
     """Corners [m] and triangles, three corners each, of a pack's vessel whose shape is "mesh"; they stand in its scene."""
     text = tomllib.loads(pack.provenance["effective_input"])["container"]["surface"]
