@@ -40,6 +40,7 @@ std::vector<Group> groups(const Specimen& s) {
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
   if (!s.scene.features.mixture) return {{"all", "", contact(s, share, in.contact.wall_friction, runs_with_walls(s))}};
   std::vector<Group> found;
+  found.reserve(static_cast<std::size_t>(kinds(s)));
   for (int k = 0; k < kinds(s); ++k) {
     found.push_back({fmt::format("component{}", k + 1), fmt::format("_{}", k + 1),
                      lammps_law(s, scene::wall_material(in, k), share, runs_with_walls(s))});
