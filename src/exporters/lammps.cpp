@@ -30,20 +30,23 @@ bool servoed(const Specimen& s) { return s.scene.container.lid && s.springs.of.e
 /// Runs for which walls, once defined, are used: see lammps_law().
 int runs_with_walls(const Specimen& s) { return s.springs.of.empty() && !s.scene.container.lid ? 1 : 2; }
 
-/// Who touches walls: all particles, or those of one component; `suffix` ends the names of their fixes.
+/// Who touches walls: all particles, or those of one component, whose group `definition` makes; `suffix` ends the names
+/// of their fixes.
 struct Group {
-  std::string name, suffix, law;
+  std::string name, suffix, definition, law;
 };
 
 std::vector<Group> groups(const Specimen& s) {
   const input::Input& in = s.scene.in;
   const double share = in.contact.wall == input::WallStiffness::rigid ? 1.0 : 0.5;
-  if (!s.scene.features.mixture) return {{"all", "", contact(s, share, in.contact.wall_friction, runs_with_walls(s))}};
+  const int runs = runs_with_walls(s);
+  if (!s.scene.features.mixture) return {{"all", "", "", contact(s, share, in.contact.wall_friction, runs)}};
   std::vector<Group> found;
   found.reserve(static_cast<std::size_t>(kinds(s)));
-  for (int k = 0; k < kinds(s); ++k) {
-    found.push_back({fmt::format("component{}", k + 1), fmt::format("_{}", k + 1),
-                     lammps_law(s, scene::wall_material(in, k), share, runs_with_walls(s))});
+  for (int type = 1; type <= kinds(s); ++type) {
+    found.push_back({fmt::format("component{}", type), fmt::format("_{}", type),
+                     fmt::format("group           component{0} type {0}\n", type),
+                     lammps_law(s, scene::wall_material(in, type - 1), share, runs)});
   }
   return found;
 }
@@ -78,7 +81,7 @@ std::string regions(const Specimen& s) {
 std::string walls(const Specimen& s) {
   std::string text = regions(s);
   for (const Group& of : groups(s)) {
-    if (!of.suffix.empty()) text += fmt::format("group           {} type {}\n", of.name, of.suffix.substr(1));
+    text += of.definition;
     for (const Region& region : round_regions(s)) {
       text += fmt::format("fix             wall_{0}{1} {2} wall/gran/region granular {3} region {0}\n", region.name,
                           of.suffix, of.name, of.law);

@@ -398,6 +398,12 @@ TEST_F(Estimates, TheProbeRunsAndTheJsonSaysIt) {
 
 // Several components have limits, too; strata, which have several recipes, do not.
 TEST_F(Estimates, LimitsOfSeveralComponents) {
+  const auto component = [](const char* name, double density, double radius) {
+    return fmt::format(
+        "[[component]]\nname = \"{}\"\nshare = 1\ndensity = {}\nyoungs_modulus = 1e7\npoisson_ratio = 0.25\n"
+        "radius = {{ distribution = \"equal\", value = {} }}\n",
+        name, density, radius);
+  };
   const std::string mixed = R"(
 [container]
 size = [0.12, 0.12, 0.08]
@@ -416,21 +422,8 @@ relaxation = 0.01
 wait = 0
 [mixture]
 share_by = "mass"
-[[component]]
-name = "a"
-share = 1
-density = 1000
-youngs_modulus = 1e7
-poisson_ratio = 0.25
-radius = { distribution = "equal", value = 0.01 }
-[[component]]
-name = "b"
-share = 1
-density = 2000
-youngs_modulus = 1e7
-poisson_ratio = 0.25
-radius = { distribution = "equal", value = 0.008 }
-)";
+)" + component("a", 1000.0, 0.01) +
+                            component("b", 2000.0, 0.008);
   const fs::path path = fs::path(testing::TempDir()) / fmt::format("mixed_{}.toml", ::getppid());
   const auto of_text = [&](const std::string& text) {
     if (comm_.rank() == 0) std::ofstream(path) << text;
