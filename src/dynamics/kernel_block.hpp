@@ -12,7 +12,7 @@ template <Features F>
 struct Memory {
   static constexpr particles::Layout layout = F.layout();
   static constexpr int stride = layout.stride;
-  static constexpr int chunks =  // vectors of four a record
+  static constexpr int chunks =  // of four fields a record
       (layout.dimension == 3 && layout.rotation ? 3 : 2) + (F.mixture ? 1 : 0);
   static constexpr int rows = 4 * chunks;
   static constexpr int stored = scene::stored_doubles(F);
@@ -25,19 +25,22 @@ struct Memory {
     for (const scene::Reading& row : scene::readings(F)) count += covers(row, offset) ? 1 : 0;
     return count;
   }
-  /// Is any field of the chunk read twice?
-  static constexpr bool twice(int chunk) {
+  /// Is any of the fields of a square from `offset` on read twice?
+  static constexpr bool twice(int offset) {
     bool any = false;
-    for (int lane = 0; lane < 4; ++lane) any = any || reads(4 * chunk + lane) > 1;
+    for (int lane = 0; lane < width; ++lane) any = any || reads(offset + lane) > 1;
     return any;
   }
-  static constexpr bool any_twice = twice(0) || twice(1) || twice(2);
+  static constexpr bool any_twice = [] {
+    bool any = false;
+    for (int field = 0; field < rows; ++field) any = any || reads(field) > 1;
+    return any;
+  }();
 
   /// Flips the sign of the first's fields that are subtracted in the first reading, or of those that were not, in the
   /// second.
-  static PACKMPI_INLINE BitLanes signs(int chunk, bool second) {
-    const int o = 4 * chunk;
-    return BitLanes{sign(o, second), sign(o + 1, second), sign(o + 2, second), sign(o + 3, second)};
+  static PACKMPI_INLINE BitRow signs(int offset, bool second) {
+    return row_of([&](int lane) { return sign(offset + lane, second); });
   }
   static constexpr std::uint64_t sign(int offset, bool second) {
     bool differs = false;
@@ -208,25 +211,25 @@ PACKMPI_INLINE void pack(const double* records, Block<F>& b) {
   using M = Memory<F>;
   constexpr int stride = M::stride;
   const std::int64_t ahead = b.reach + 80;  // records that the next blocks will be the first to touch
-  for (int p = 0; p < b.filled; p += 4) {
-    const double* i[4];
-    const double* j[4];
-    for (int e = 0; e < 4; ++e) {
+  for (int p = 0; p < b.filled; p += width) {
+    const double* i[width];
+    const double* j[width];
+    for (int e = 0; e < width; ++e) {
       i[e] = records + std::int64_t{b.first[p + e]} * stride;
       j[e] = records + std::int64_t{b.second[p + e]} * stride;
     }
-    __builtin_prefetch(i[0] + ahead * stride);  // a record spans two lines
-    __builtin_prefetch(i[0] + ahead * stride + 8);
-    for (int chunk = 0; chunk < M::chunks; ++chunk) {
+    if (p % 4 == 0) {
+      __builtin_prefetch(i[0] + ahead * stride);  // a record spans two lines
+      __builtin_prefetch(i[0] + ahead * stride + 8);
+    }
+    for (int field = 0; field < M::rows; field += width) {
       for (const bool second : {false, true}) {
-        if (second && !M::twice(chunk)) continue;
-        const BitLanes sign = M::signs(chunk, second);
-        Lanes pair[4];
-        for (int e = 0; e < 4; ++e) {
-          pair[e] = load(j[e] + 4 * chunk) + as_doubles(as_bits(load(i[e] + 4 * chunk)) ^ sign);
-        }
-        transpose(pair[0], pair[1], pair[2], pair[3]);
-        for (int e = 0; e < 4; ++e) store((second ? b.again : b.in)[4 * chunk + e] + p, pair[e]);
+        if (second && !M::twice(field)) continue;
+        const BitRow signs = M::signs(field, second);
+        Row pair[width];
+        for (int e = 0; e < width; ++e) pair[e] = load_row(j[e] + field) + flipped(load_row(i[e] + field), signs);
+        transpose(pair);
+        for (int e = 0; e < width; ++e) store_row((second ? b.again : b.in)[field + e] + p, pair[e]);
       }
     }
   }
@@ -238,24 +241,24 @@ template <Features F>
 PACKMPI_INLINE void scatter(std::int64_t* ring, Block<F>& b) {
   using M = Memory<F>;
   constexpr int accumulators = M::accumulators;
-  for (int p = 0; p < b.filled; p += 4) {
-    for (int a = 0; a < accumulators; a += 4) {
-      const BitLanes flip = {M::minus(a), M::minus(a + 1), M::minus(a + 2), M::minus(a + 3)};
-      BitLanes given[4];
-      BitLanes taken[4];
-      for (int e = 0; e < 4; ++e) given[e] = M::given(a + e) ? load_bits(b.out[a + e] + p) : BitLanes{};
+  for (int p = 0; p < b.filled; p += width) {
+    for (int a = 0; a < accumulators; a += width) {
+      const BitRow flip = row_of([&](int e) { return M::minus(a + e); });
+      BitRow given[width];
+      BitRow taken[width];
+      for (int e = 0; e < width; ++e) given[e] = M::given(a + e) ? load_row(b.out[a + e] + p) : BitRow{};
       if constexpr (M::any_own) {
-        for (int e = 0; e < 4; ++e) {  // what is not its own is negated below
-          taken[e] = M::given(a + e, scene::Mirror::own) ? load_bits(b.own[a + e] + p) : given[e];
+        for (int e = 0; e < width; ++e) {  // what is not its own is negated below
+          taken[e] = M::given(a + e, scene::Mirror::own) ? load_row(b.own[a + e] + p) : given[e];
         }
-        transpose(taken[0], taken[1], taken[2], taken[3]);
+        transpose(taken);
       }
-      transpose(given[0], given[1], given[2], given[3]);
-      for (int e = 0; e < 4; ++e) {
+      transpose(given);
+      for (int e = 0; e < width; ++e) {
         std::int64_t* i = ring + std::int64_t{b.first_slot[p + e]} * accumulators + a;
         std::int64_t* j = ring + std::int64_t{b.second_slot[p + e]} * accumulators + a;
-        store_bits(i, load_bits(i) + given[e]);
-        store_bits(j, load_bits(j) + (((M::any_own ? taken[e] : given[e]) ^ flip) - flip));
+        store_row(i, load_row(i) + given[e]);
+        store_row(j, load_row(j) + (((M::any_own ? taken[e] : given[e]) ^ flip) - flip));
       }
     }
   }

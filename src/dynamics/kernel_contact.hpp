@@ -211,7 +211,7 @@ PACKMPI_INLINE Pressed press_3d(const Constants& c, const Meeting& at) {
   Pressed p = {at.n, raw < c.lowest_force ? c.lowest_force : raw, {}, {}, at.reduced.radius};  // a NaN passes through
   if constexpr (F.friction) {
     const Vector across = sum(at.v, rate, at.n);
-    p.u = across;
+    p.u = {across.x, across.y, across.z};  // a copy of the whole is no statement that gcc vectorises
     if constexpr (F.rotation) p.u = sum(across, -c.spin_slip, cross(at.s, at.n));
     if constexpr (F.memory) p.now = spring_state(c, at, contact, damped, rate, dot(across, across));
   }

@@ -43,17 +43,52 @@ PACKMPI_INLINE double root(double x) { return __builtin_sqrt(x); }
 PACKMPI_INLINE double magnitude(double x) { return __builtin_fabs(x); }
 PACKMPI_INLINE double with_sign_of(double x, double sign) { return __builtin_copysign(x, sign); }
 
+// Records become structures of arrays in squares as wide as a register: without AVX the halves of four lanes would be
+// put together in memory.
+#ifdef __AVX__
+constexpr int width = 4;
+#else
+constexpr int width = 2;
+#endif
+constexpr int square_bytes = 8 * width;
+using Row = double __attribute__((vector_size(square_bytes)));
+using BitRow = std::uint64_t __attribute__((vector_size(square_bytes)));
+using RowInMemory = double __attribute__((vector_size(square_bytes), aligned(8), may_alias));
+using BitRowInMemory = std::uint64_t __attribute__((vector_size(square_bytes), aligned(8), may_alias));
+
+PACKMPI_INLINE Row load_row(const double* p) { return *reinterpret_cast<const RowInMemory*>(p); }
+PACKMPI_INLINE void store_row(double* p, Row a) { *reinterpret_cast<RowInMemory*>(p) = a; }
+PACKMPI_INLINE BitRow load_row(const std::int64_t* p) { return *reinterpret_cast<const BitRowInMemory*>(p); }
+PACKMPI_INLINE void store_row(std::int64_t* p, BitRow a) { *reinterpret_cast<BitRowInMemory*>(p) = a; }
+PACKMPI_INLINE Row flipped(Row a, BitRow signs) { return reinterpret_cast<Row>(reinterpret_cast<BitRow>(a) ^ signs); }
+
+/// Of the number that `of` gives for each lane: at once, as lanes that are set one by one stay in memory.
+template <class Number>
+PACKMPI_INLINE BitRow row_of(const Number& of) {
+#ifdef __AVX__
+  return BitRow{of(0), of(1), of(2), of(3)};
+#else
+  return BitRow{of(0), of(1)};
+#endif
+}
+
 /// Rows become columns.
 template <class V>
-PACKMPI_INLINE void transpose(V& a, V& b, V& c, V& d) {
-  const V ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-  const V ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const V cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-  const V cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+PACKMPI_INLINE void transpose(V (&row)[width]) {
+#ifdef __AVX__
+  const V even = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
+  const V odd = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+  const V next_even = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
+  const V next_odd = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+  row[0] = __builtin_shufflevector(even, next_even, 0, 1, 4, 5);
+  row[1] = __builtin_shufflevector(odd, next_odd, 0, 1, 4, 5);
+  row[2] = __builtin_shufflevector(even, next_even, 2, 3, 6, 7);
+  row[3] = __builtin_shufflevector(odd, next_odd, 2, 3, 6, 7);
+#else
+  const V even = __builtin_shufflevector(row[0], row[1], 0, 2);
+  row[1] = __builtin_shufflevector(row[0], row[1], 1, 3);
+  row[0] = even;
+#endif
 }
 
 /// x rounded to the nearest integer, ties to even; |x| < 2^51. No CPU before AVX-512 converts lanes of 64 bits.
