@@ -14,6 +14,7 @@ Grid::Grid(const Shell& shell) {
   width_ = elementary::cube_root(size[0] * size[1] * size[2] / cells);
   const double largest = *std::ranges::max_element(size);
   width_ = std::max(width_, largest / 4096.0);  // of thin plates
+  per_width_ = 1.0 / width_;
   std::int64_t all = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     count_[a] = static_cast<std::int64_t>(size[a] / width_) + 3;
@@ -32,14 +33,6 @@ Grid::Grid(const Shell& shell) {
              [&](std::int64_t cell) { entries_[next[static_cast<std::size_t>(cell)]++] = static_cast<int>(t); });
   }
 }
-
-std::int64_t Grid::step(double x, std::size_t axis) const {
-  const double place = (x - low_[axis]) / width_;
-  if (!(place > 0.0)) return 0;
-  return std::min(static_cast<std::int64_t>(std::min(place, 1e9)), count_[axis] - 1);
-}
-
-std::int64_t Grid::cell_of(const Vec3& x) const { return join({step(x[0], 0), step(x[1], 1), step(x[2], 2)}); }
 
 Vec3 Grid::middle(std::int64_t cell) const {
   const auto at = split(cell);

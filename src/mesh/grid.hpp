@@ -1,5 +1,7 @@
 /// Which triangles are near: a uniform grid of cubic cells around a surface.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,25 +18,26 @@ class Grid {
   /// Triangles of the cells that meet the box from `low` to `high`, each once, in ascending order: all that reach into
   /// it, and others.
   void in_box(const Vec3& low, const Vec3& high, std::vector<int>& found) const;
-  /// The same, for some more than once, calling see(triangle) until that says true: is there such a one?
+  /// Calls see(triangle), for some more than once, until that says true, for all that the cells have that a ball of
+  /// radius `r` [m] meets, and others: is there such a one?
   template <class See>
-  [[nodiscard]] bool any_in_box(const Vec3& low, const Vec3& high, See&& see) const {
+  [[nodiscard]] bool any_in_ball(const Vec3& x, double r, See&& see) const {
     std::array<std::int64_t, 3> from{}, to{};
-    for (std::size_t a = 0; a < 3; ++a) from[a] = step(low[a], a), to[a] = step(high[a], a);
+    for (std::size_t a = 1; a < 3; ++a) from[a] = step(x[a] - r, a), to[a] = step(x[a] + r, a);
     for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+      const double over = away(x[2], z, 2), slice = wider * (r * r) - over * over;
       for (std::int64_t y = from[1]; y <= to[1]; ++y) {
-        const std::int64_t row = join({0, y, z});
-        const auto end = start_[static_cast<std::size_t>(row + to[0]) + 1];
-        for (auto k = start_[static_cast<std::size_t>(row + from[0])]; k < end; ++k) {
-          if (see(entries_[k])) return true;
-        }
+        const double beside = away(x[1], y, 1), square = slice - beside * beside;
+        if (!(square >= 0.0)) continue;
+        const double half = std::sqrt(square);
+        if (any_in_row(join({0, y, z}), step(x[0] - half, 0), step(x[0] + half, 0), see)) return true;
       }
     }
     return false;
   }
   template <class See>
-  void each_in_box(const Vec3& low, const Vec3& high, See&& see) const {
-    (void)any_in_box(low, high, [&](int triangle) { return see(triangle), false; });
+  void each_in_ball(const Vec3& x, double r, See&& see) const {
+    (void)any_in_ball(x, r, [&](int triangle) { return see(triangle), false; });
   }
   /// Calls see(first, last) for each cell with its triangles.
   template <class See>
@@ -47,7 +50,10 @@ class Grid {
   [[nodiscard]] bool is_empty(std::int64_t cell) const {
     return start_[static_cast<std::size_t>(cell)] == start_[static_cast<std::size_t>(cell) + 1];
   }
-  [[nodiscard]] std::int64_t cell_of(const Vec3& x) const;  ///< of points beyond, the nearest
+  /// Of points beyond, the nearest.
+  [[nodiscard]] std::int64_t cell_of(const Vec3& x) const {
+    return join({step(x[0], 0), step(x[1], 1), step(x[2], 2)});
+  }
   [[nodiscard]] Vec3 middle(std::int64_t cell) const;
   [[nodiscard]] double width() const { return width_; }  ///< [m] of a cell
   /// Calls see(cell) for the up to 26 cells around one, or the six that share a side with it.
@@ -72,7 +78,26 @@ class Grid {
   }
 
  private:
-  [[nodiscard]] std::int64_t step(double x, std::size_t axis) const;
+  static constexpr double wider = 1.0 + 1e-9;  // for the sake of rounding
+
+  [[nodiscard]] std::int64_t step(double x, std::size_t axis) const {
+    const double place = (x - low_[axis]) * per_width_;
+    if (!(place > 0.0)) return 0;
+    return std::min(static_cast<std::int64_t>(std::min(place, 1e9)), count_[axis] - 1);
+  }
+  /// [m] from a coordinate to the cells of one number; those at the ends have all that is beyond them.
+  [[nodiscard]] double away(double x, std::int64_t number, std::size_t axis) const {
+    const double low = low_[axis] + static_cast<double>(number) * width_, high = low + width_;
+    return std::max({0.0, number > 0 ? low - x : 0.0, number + 1 < count_[axis] ? x - high : 0.0}) * (1.0 - 1e-9);
+  }
+  template <class See>
+  [[nodiscard]] bool any_in_row(std::int64_t row, std::int64_t from, std::int64_t to, See&& see) const {
+    const auto end = start_[static_cast<std::size_t>(row + to) + 1];
+    for (auto k = start_[static_cast<std::size_t>(row + from)]; k < end; ++k) {
+      if (see(entries_[k])) return true;
+    }
+    return false;
+  }
   [[nodiscard]] std::int64_t join(const std::array<std::int64_t, 3>& at) const {
     return at[0] + count_[0] * (at[1] + count_[1] * at[2]);
   }
@@ -83,7 +108,7 @@ class Grid {
   void cells_of(const Shell& shell, std::size_t triangle, See&& see) const;
 
   Vec3 low_{};
-  double width_ = 1.0;
+  double width_ = 1.0, per_width_ = 1.0;
   std::array<std::int64_t, 3> count_{1, 1, 1};
   std::vector<std::uint32_t> start_;  // of each cell in entries_
   std::vector<int> entries_;

@@ -132,14 +132,7 @@ Vec3 Surface::outward(const Hit& hit) const {
   return plus(spot_[t].normal, spot_[static_cast<std::size_t>(other)].normal);
 }
 
-// From the plane of a triangle, squared, a little less: no place of the triangle is nearer.
-double Surface::off_plane(const Vec3& x, int triangle) const {
-  const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
-  const double away = dot(spot.normal, minus(x, spot.middle));
-  return (1.0 - 1e-9) * (away * away);
-}
-
-// Of the disc around it in its plane. Wrong for the sake of rounding only where the range is a millionth of the
+// By the disc around it in its plane. Wrong for the sake of rounding only where the range is a millionth of the
 // triangle.
 inline bool Surface::may_be_near(const Vec3& x, int triangle, double range) const {
   const Spot& spot = spot_[static_cast<std::size_t>(triangle)];
@@ -158,17 +151,17 @@ Nearest Surface::nearest(const Vec3& x) const {
     outside += beyond * beyond;
   }
   Hit best{endless, {}, -1, 6};
+  double distance = endless;
   const auto look = [&](int t) {
-    if (off_plane(x, t) > best.squared) return;
-    if (const Hit here = hit(x, t); here.squared < best.squared) best = here;
+    if (!may_be_near(x, t, distance)) return;
+    if (const Hit here = hit(x, t); here.squared < best.squared) best = here, distance = std::sqrt(best.squared);
   };
-  if (!grid_.is_empty(grid_.cell_of(x))) grid_.each_in_box(x, x, look);  // most of them are very near
+  if (!grid_.is_empty(grid_.cell_of(x))) grid_.each_in_ball(x, 0.0, look);  // most of them are very near
   for (double half = std::sqrt(outside) + grid_.width();; half *= 2.0) {
-    if (best.triangle >= 0) half = std::sqrt(best.squared) * (1.0 + 1e-12);
-    grid_.each_in_box({x[0] - half, x[1] - half, x[2] - half}, {x[0] + half, x[1] + half, x[2] + half}, look);
+    if (best.triangle >= 0) half = distance * (1.0 + 1e-12);
+    grid_.each_in_ball(x, half, look);
     if (best.squared <= half * half) break;
   }
-  const double distance = std::sqrt(best.squared);
   return {dot(minus(x, best.place), outward(best)) > 0.0 ? -distance : distance, best.place};
 }
 
@@ -189,16 +182,30 @@ bool Surface::fits(const Vec3& x, double r) const {
   if (steps < 0) return false;
   if ((steps - 1) * grid_.width() >= r) return true;
   const auto too_near = [&](int t) { return may_be_near(x, t, r) && std::sqrt(hit(x, t).squared) < r; };
-  if (steps == 0 && grid_.any_in_box(x, x, too_near)) return false;
-  if (grid_.any_in_box({x[0] - r, x[1] - r, x[2] - r}, {x[0] + r, x[1] + r, x[2] + r}, too_near)) return false;
-  return steps > 0 || nearest(x).distance >= r;
+  if (steps == 0 && grid_.any_in_ball(x, 0.0, too_near)) return false;
+  if (grid_.any_in_ball(x, r, too_near)) return false;
+  return steps > 0 || side_of(x, (1.0 - 1e-9) * r) > 0;
+}
+
+// All within `clear` is on one side, and cells without triangles tell on which.
+int Surface::side_of(const Vec3& x, double clear) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const double off : {-clear, clear}) {
+      Vec3 beside = x;
+      beside[a] += off;
+      if (const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(beside))]; steps != 0) return steps;
+    }
+  }
+  return nearest(x).distance > 0.0 ? 1 : -1;
 }
 
 double Surface::beyond(const Vec3& x) const {
   if (!(x[0] - x[0] == 0.0 && x[1] - x[1] == 0.0 && x[2] - x[2] == 0.0)) return x[0] + x[1] + x[2];
   const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
   constexpr double somewhat = 1e-300;  // inside, wherever that is
-  return steps > 0 ? -std::max((steps - 1) * grid_.width(), somewhat) : -nearest(x).distance;
+  if (steps > 0) return -std::max((steps - 1) * grid_.width(), somewhat);
+  const double off = 0.5 * grid_.width();
+  return steps == 0 && fits(x, off) ? -off : -nearest(x).distance;
 }
 
 Vec3 Surface::draw(const Vec3& u, double r, double low, double high) const {
@@ -240,7 +247,7 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   found.hits.clear();
   found.seen.resize(shell_.triangles.size());
   ++found.search;
-  grid_.each_in_box({x[0] - range, x[1] - range, x[2] - range}, {x[0] + range, x[1] + range, x[2] + range}, [&](int t) {
+  grid_.each_in_ball(x, range, [&](int t) {
     std::uint32_t& seen = found.seen[static_cast<std::size_t>(t)];
     if (seen == found.search) return;
     seen = found.search;

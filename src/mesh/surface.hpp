@@ -111,9 +111,10 @@ class Surface {
     double reach;  // [m] from the middle to the farthest corner
   };
   [[nodiscard]] Hit hit(const Vec3& x, int triangle) const;
-  [[nodiscard]] double off_plane(const Vec3& x, int triangle) const;
   [[nodiscard]] bool may_be_near(const Vec3& x, int triangle, double range) const;
   [[nodiscard]] Vec3 outward(const Hit& hit) const;
+  /// Above 0: x is in the room, below: outside. No triangle is nearer than `clear` [m].
+  [[nodiscard]] int side_of(const Vec3& x, double clear) const;
   void weigh_points();
   void fill_cells();
 

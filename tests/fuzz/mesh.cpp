@@ -28,6 +28,7 @@ void check_taken(const mesh::Surface& surface) {
     }
     const double distance = surface.nearest(x).distance;
     demand(std::isfinite(distance), "a distance that is no number");
+    demand((surface.beyond(x) > 0.0) == (distance < 0.0), "beyond() disagrees");
     for (const double r : {0.5, 0.999, 1.001, 2.0}) {
       const double range = r * std::abs(distance);
       if (range > 0.0) demand(surface.fits(x, range) == (surface.distance(x, range) >= range), "fits() disagrees");

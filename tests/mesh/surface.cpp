@@ -284,6 +284,8 @@ TEST(Distance, EqualsThatOfAllTriangles) {
       const double range = dice(0.0, 1.0);
       EXPECT_NEAR(surface.distance(x, range), std::clamp(expected, -range, range), 1e-12);
       EXPECT_EQ(surface.fits(x, range), surface.distance(x, range) >= range);
+      EXPECT_EQ(surface.beyond(x) > 0.0, expected < 0.0);
+      EXPECT_LE(-surface.beyond(x), expected + 1e-12);
     }
   }
 }
