@@ -243,7 +243,7 @@ MESH_KINDS = {
 
 
 def mesh_run(options, kind, seed):
-    """CPU seconds of a whole job, and its summary."""
+    """CPU seconds of a whole job, those of its steps with their lists, and its summary."""
     folder = options.results / "mesh" / f"{kind.replace(' ', '_')}_{seed}"
     folder.mkdir(parents=True, exist_ok=True)
     container, surface = MESH_KINDS[kind]
@@ -260,22 +260,28 @@ def mesh_run(options, kind, seed):
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode not in (0, 3):
         common.fail(f"{scene}: {done.stdout[-300:]}{done.stderr[-300:]}")
-    return after.ru_utime - before.ru_utime, json.loads((folder / "bed.json").read_text())["achieved"]
+    report = json.loads((folder / "bed.json").read_text())
+    return after.ru_utime - before.ru_utime, report["costs"]["stepping"]["sum"], report["achieved"]
 
 
 def mesh_table(options):
-    lines = ["| vessel | triangles | spheres | porosity | CPU, a job [s] | CPU, a particle and step [ns] | over that without triangles |", "|---|---|---|---|---|---|---|"]
+    lines = ["| vessel | triangles | spheres | porosity | CPU, a job [s] | over that without triangles | a step of a particle, lists included [ns] | over that without triangles | over that in a box |",
+             "|---|---|---|---|---|---|---|---|---|"]
     runs = {kind: [] for kind in MESH_KINDS}
     for seed in range(1, options.seeds + 1):   # in turn, so that what else the machine does falls on all
         for kind in MESH_KINDS:
             runs[kind].append(mesh_run(options, kind, seed))
+    job = {kind: [1e9 * seconds / summary["particle_steps"] for seconds, _, summary in got] for kind, got in runs.items()}
+    step = {kind: [stepping / summary["particle_steps"] for _, stepping, summary in got] for kind, got in runs.items()}
+
+    def over(cost, kind, other):
+        return measuring.spread([a / b for a, b in zip(cost[kind], cost[other])], 2) if kind != other else ""
+
     for kind, got in runs.items():
-        cost = [1e9 * seconds / summary["particle_steps"] for seconds, summary in got]
-        of = [1e9 * seconds / summary["particle_steps"] for seconds, summary in runs[kind.split(" of ")[0]]]
-        surface = MESH_KINDS[kind][1]
-        lines.append(f"| {kind} | {surface().count('f ') if surface else 0:,} | {mean([s['particles'] for _, s in got]):,.0f} | "
-                     f"{measuring.spread([s['porosity_bulk'] for _, s in got], 4)} | {measuring.spread([t for t, _ in got], 1)} | {measuring.spread(cost, 0)} | "
-                     f"{measuring.spread([a / b for a, b in zip(cost, of)], 2) if surface else ''} |")
+        surface, plain = MESH_KINDS[kind][1], kind.split(" of ")[0]
+        lines.append(f"| {kind} | {surface().count('f ') if surface else 0:,} | {mean([s['particles'] for *_, s in got]):,.0f} | "
+                     f"{measuring.spread([s['porosity_bulk'] for *_, s in got], 4)} | {measuring.spread([t for t, *_ in got], 1)} | {over(job, kind, plain)} | "
+                     f"{measuring.spread(step[kind], 0)} | {over(step, kind, plain)} | {over(step, kind, 'box')} |")
     lines += ["", f"{options.seeds} seeds, friction {options.friction:g}, spheres of {1000 * DIAMETER:g} mm. {measuring.made_by('scripts/study/vessels.py --mesh')}."]
     return "\n".join(lines)
 

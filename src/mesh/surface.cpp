@@ -169,8 +169,7 @@ double Surface::distance(const Vec3& x, double range) const {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(x[a] > shell_.low[a] - range && x[a] < shell_.high[a] + range)) return -range;
   }
-  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
-  if ((std::abs(steps) - 1) * grid_.width() >= range) return steps > 0 ? range : -range;
+  if (is_clear(x, range)) return clear_[static_cast<std::size_t>(grid_.cell_of(x))] > 0 ? range : -range;
   return std::clamp(nearest(x).distance, -range, range);
 }
 
@@ -239,8 +238,7 @@ void Surface::touches(const Vec3& x, double range, double behind,
 // Of a face's triangles the one with the nearest middle comes first: most often it is the one that is asked for.
 void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
   found.clear();
-  const int steps = clear_[static_cast<std::size_t>(grid_.cell_of(x))];
-  if ((std::abs(steps) - 1) * grid_.width() >= range) return;
+  if (is_clear(x, range)) return;
   const Table table = features_.table(behind);
   const double square = range * range;
   const auto close_to = [&](const Vec3& place) { return dot(minus(x, place), minus(x, place)) < square; };

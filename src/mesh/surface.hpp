@@ -1,6 +1,7 @@
 /// A room inside a closed surface of triangles: volumes, sections, distances.
 #pragma once
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -86,6 +87,10 @@ class Surface {
   [[nodiscard]] Vec3 draw(const Vec3& u, double r, double low, double high) const;
 
   [[nodiscard]] const Features& features() const { return features_; }
+  /// Is all of the surface `range` [m] away from x, as cells of the grid tell at once? It may be where they do not.
+  [[nodiscard]] bool is_clear(const Vec3& x, double range) const {
+    return (std::abs(clear_[static_cast<std::size_t>(grid_.cell_of(x))]) - 1) * grid_.width() >= range;
+  }
   /// All features that are nearer to x than `range` [m], and some faces that are not; but not more than `behind` [m]
   /// and the range on the other side of x.
   void near(const Vec3& x, double range, double behind, NearFeatures& found) const;

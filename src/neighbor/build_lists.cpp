@@ -143,7 +143,7 @@ void Neighborhood::build_features(const particles::Store& store, double lid_move
   const geometry::Container& vessel = scene_->container;
   walls_.near.clear();
   walls_.near_begin.assign(1, 0);
-  mesh::NearFeatures found;
+  near_memory_.begin();
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 x = store.position(i);
     const double extent = extent_[static_cast<std::size_t>(i)];
@@ -153,7 +153,8 @@ void Neighborhood::build_features(const particles::Store& store, double lid_move
       walls_.wall.push_back(Wall::lid);
       walls_.near_begin.push_back(before);
     }
-    vessel.room->near(x, extent, vessel.behind, found);
+    const mesh::NearFeatures& found = near_memory_.near(*vessel.room, store.ids()[static_cast<std::size_t>(i)], x,
+                                                        extent, 0.1 * store.radius(i), vessel.behind);
     walls_.near.insert(walls_.near.end(), found.triangles.begin(), found.triangles.end());
     for (std::size_t k = 0; k < found.feature.size(); ++k) {
       walls_.particle.push_back(i);

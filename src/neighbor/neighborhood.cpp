@@ -434,6 +434,7 @@ std::size_t Neighborhood::bytes() const noexcept {
   }
   total += memory_.bytes();
   total += walls_.facing.capacity() * sizeof(geometry::Facing);
+  total += near_memory_.bytes();
   total += (walls_.near.capacity() + walls_.near_begin.capacity()) * sizeof(std::int32_t);
   return total + walls_.particle.capacity() * (sizeof(LocalIndex) + sizeof(Wall));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "mesh/near_memory.hpp"
 #include "neighbor/cells.hpp"
 #include "neighbor/contact_memory.hpp"
 #include "neighbor/frozen.hpp"
@@ -145,6 +146,7 @@ class Neighborhood {
   SizeClasses size_classes_;  // used if the scene has more than one
   PairList pairs_, near_pairs_;
   WallList walls_;
+  mesh::NearMemory near_memory_;  // of a mesh
   ContactMemory memory_;
   bool one_sided_ = false;  // histories of border pairs may be at one of their owners only, on some rank
   std::vector<Leg> sweep_;
