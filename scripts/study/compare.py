@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """packmpi, LAMMPS and LIGGGHTS on the same scenes, in turn, in the same minutes, on the same core.
 
-  scripts/study/compare.sh [--runs 3] [--seeds 2] [--beds 107000 964000 | --no-beds] [--no-brick] [--quick] [--core 0]
+  scripts/study/compare.sh [--runs 3] [--seeds 2] [--beds 107000 964000 | --no-beds] [--no-brick] [--memory] [--quick] [--core 0]
 
 Beds: settled beds of the paper's spheres between walls (rotation on, time step 1e-4 s), written by
 tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
 of the mean); particle-steps a second, everything in. Brick: example 5.3 from nothing to the twelfth layer: wall time, and
-the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one. --quick: small
+the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one; with --memory by friction
+with memory, packmpi by its presets. --quick: small
 scenes, to try the script. The tables replace the blocks of the document between "compare ..." markers. 22 to 60 minutes.
 """
 import argparse
@@ -101,7 +102,7 @@ def peer_brick(machine, options, code, seed):
     variables = {"tag": code, "seed": seed, "layers": options.layers, "steps": round(options.duration / 1e-4),
                  "side": options.side}
     if code == "LAMMPS":
-        variables["mol"] = PEERS / "lammps/sphere.mol"
+        variables |= {"mol": PEERS / "lammps/sphere.mol", "memory": int(options.memory)}
     words = [word for key, value in variables.items() for word in ("-var", key, value)]
     _, seconds = machine.run(program, "-in", PEERS / folder / "brick.in", *words, "-log", f"{folder}.log")
     positions = measuring.read_dump(machine.folder / f"brick_{code}.dump")
@@ -115,6 +116,10 @@ def bricks(machine, options):
               FAST: lambda seed: packmpi_brick(machine, options, seed, {"fidelity": "balanced"}),
               "LAMMPS": lambda seed: peer_brick(machine, options, "LAMMPS", seed),
               "LIGGGHTS": lambda seed: peer_brick(machine, options, "LIGGGHTS", seed)}
+    if options.memory:
+        held = {name: {"fidelity": name, "contact.tangential": "mindlin"} for name in ("balanced", "draft")}
+        makers = {f'packmpi, `"{name}"`': lambda seed, changes=changes: packmpi_brick(machine, options, seed, changes) for name, changes in held.items()}
+        makers["LAMMPS"] = lambda seed: peer_brick(machine, options, "LAMMPS", seed)
     found = {name: [] for name in makers}
     for seed in range(1, options.seeds + 1):
         for name, make in makers.items():
@@ -146,6 +151,8 @@ def brick_table(found):
         mean = {key: statistics.mean(run[key] for run in runs) for key in ("spheres", "phi_bulk", "coordination", "overlap")}
         out.append(f"| {name} | {measuring.spread([run['seconds'] for run in runs])} | {measuring.spread(gains, 2)} | {mean['spheres']:.0f} | "
                    f"{mean['phi_bulk']:.4f} | {mean['coordination']:.2f} | {mean['overlap']:.2e} |")
+    if PAPER not in found:
+        return out
     paper, fast = found[PAPER], found[FAST]
     phi, contacts = ([f[key] - p[key] for f, p in zip(fast, paper)] for key in ("phi_bulk", "coordination"))
     overlap = statistics.mean(f["overlap"] / p["overlap"] for f, p in zip(fast, paper))
@@ -169,10 +176,12 @@ def blocks(options, rows, found):
     """What was measured, by name of its block in the document, each with its own date and commit."""
     lammps = version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)")
     liggghts = version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")
-    made = (f"{measuring.made_by('scripts/study/compare.sh' + (' --quick' if options.quick else ''))}, all on core {options.core} in turn. "
-            f"LAMMPS {lammps}, LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, sliding friction without history, rotation. ")
+    flags = "".join(f" --{name}" for name in ("quick", "memory") if getattr(options, name))
+    friction = "friction with memory (LAMMPS: mindlin_rescale/force)" if options.memory else "sliding friction without history"
+    made = (f"{measuring.made_by('scripts/study/compare.sh' + flags)}, all on core {options.core} in turn. "
+            f"LAMMPS {lammps}, LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, {friction}, rotation. ")
     spread = " of each. Median (least to most); ratios are taken run by run."
-    tables = {"compare brick": (f"{options.seeds} seeds", brick_table(found) if found else [])}
+    tables = {"compare brick with memory" if options.memory else "compare brick": (f"{options.seeds} seeds", brick_table(found) if found else [])}
     for name, wanted in (("compare beds", False), ("compare large beds", True)):
         mine = [row for size, row in rows if (size >= LARGE) == wanted]
         tables[name] = (f"{options.runs} runs", bed_table(mine) if mine else [])
@@ -186,6 +195,7 @@ def parse():
     parser.add_argument("--beds", type=int, nargs="+", default=[107000, 964000], help="spheres")
     parser.add_argument("--no-beds", dest="beds", action="store_const", const=[])
     parser.add_argument("--no-brick", dest="brick", action="store_false")
+    parser.add_argument("--memory", action="store_true", help="the brick by friction with memory, no beds")
     parser.add_argument("--quick", action="store_true", help="a bed of 9000 and a small, short brick, once")
     parser.add_argument("--core", type=int, default=0)
     parser.add_argument("--build", type=Path, default=measuring.ROOT / "build")
@@ -193,6 +203,7 @@ def parse():
     options = parser.parse_args()
     options.build = options.build.resolve()
     options.side, options.layers, options.duration = 1.0, 12, 1.0
+    options.beds = [] if options.memory else options.beds
     if options.quick:
         options.runs = options.seeds = 1
         options.beds = options.beds and [9000]
