@@ -143,6 +143,7 @@ Protocol in_space(Input in, const Spatial& rule) {
 /// the time to settle, the newest ones move, and the final stage goes on until the bed is at rest. Times in falls.
 struct Holding {
   double duration;    ///< of a layer
+  double speed;       ///< at insertion, in g t: what falls faster is there sooner
   double depth;       ///< of the window, in particle diameters; 0: all move
   double relaxation;  ///< at least; particles harden in half of it
   Softness softness;
@@ -156,6 +157,7 @@ Protocol with_memory(const Input& in, const Holding& rule) {
   const double rise = h * in.layers.fraction / settled_fraction;  // of the bed by a layer
   const double window = within(std::ceil(rule.depth * diameter / rise), least_window, most_window);
   return {.duration = rule.duration * t,
+          .speed = rule.speed * in.jamming.gravity * t,
           .window = rule.depth > 0.0 ? static_cast<int>(window) : 0,
           .relaxation = rule.relaxation * t,
           .modulus = softened(in, rule.softness, 0.0)};
@@ -166,9 +168,9 @@ Protocol with_memory(const Input& in, const Holding& rule) {
 /// contacts for good, and a slow one locks in the sideways stress of the soft bed, so it is sudden.
 Protocol with_memory(const Input& in) {
   constexpr Softness hard{1.0, 0.0};
-  if (in.fidelity == "reference") return with_memory(in, {5.0, 0.0, 2.5, hard});
-  if (is_draft(in)) return with_memory(in, {0.9, 6.0, 0.2, {0.1, 1.3e3}});
-  return with_memory(in, {2.0, 12.0, 2.0, hard});
+  if (in.fidelity == "reference") return with_memory(in, {5.0, 0.0, 0.0, 2.5, hard});
+  if (is_draft(in)) return with_memory(in, {0.9, 0.0, 6.0, 0.2, {0.1, 1.3e3}});
+  return with_memory(in, {1.2, 0.3, 10.0, 3.0, hard});
 }
 
 /// All measured and chosen with scripts/study/tradeoff.py (doc/accuracy.md). What creep is wanted depends on the

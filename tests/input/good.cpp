@@ -427,9 +427,11 @@ TEST(Fidelity, WithMemoryLayersGetTheTimeToSettle) {
   EXPECT_NEAR(reference.layers.duration, 5.0 * fall, 0.005 * fall);
   EXPECT_EQ(reference.dynamics.window, 0) << "all move";
   EXPECT_FALSE(reference.layers.youngs_modulus.has_value()) << "hard";
-  EXPECT_NEAR(balanced.layers.duration, 2.0 * fall, 0.005 * fall);
-  EXPECT_NEAR(*balanced.dynamics.relaxation, 2.0 * fall, 0.005 * fall);
-  EXPECT_EQ(balanced.dynamics.window, 12) << "12 diameters of 0.04 m, 0.0417 m a layer";
+  EXPECT_EQ(reference.layers.velocity[2], 0.0);
+  EXPECT_NEAR(balanced.layers.duration, 1.2 * fall, 0.005 * fall);
+  EXPECT_NEAR(balanced.layers.velocity[2], -0.3 * 2.0 * fall, 0.005 * fall);
+  EXPECT_NEAR(*balanced.dynamics.relaxation, 3.0 * fall, 0.005 * fall);
+  EXPECT_EQ(balanced.dynamics.window, 10) << "10 diameters of 0.04 m, 0.0417 m a layer";
   EXPECT_FALSE(balanced.layers.youngs_modulus.has_value()) << "hard";
   EXPECT_NEAR(draft.layers.duration, 0.9 * fall, 0.005 * fall);
   EXPECT_EQ(draft.dynamics.window, 6);
