@@ -92,7 +92,8 @@ def beds(machine, options):
 def packmpi_brick(machine, options, seed, settings):
     folder = machine.folder / "pack"
     settings = {"layers.maximum": options.layers, "container.size": f"[{options.side},{options.side},{HEIGHT}]", **settings}
-    _, seconds = machine.run(options.build / "packmpi", measuring.bare_scene("paper_5_3", machine.folder), "-q", "--force", "--seed", seed,
+    sliding = ("regularisation", "friction_velocity") if options.memory else ()   # keys of the other law
+    _, seconds = machine.run(options.build / "packmpi", measuring.bare_scene("paper_5_3", machine.folder, sliding), "-q", "--force", "--seed", seed,
                              "-o", folder, *measuring.options_of(settings))
     return seconds, *measuring.read_pack(folder / "paper_5_3.hdf")
 
