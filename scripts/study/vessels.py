@@ -5,6 +5,7 @@ doc/data/vessels.csv.
 usage: scripts/study/vessels.py [--ratios D/d ...] [--seeds N] [--friction MU] [--program build/packmpi] [--set KEY=VALUE ...] [--document FILE]
        scripts/study/vessels.py --mesh [--seeds N] ...    what a vessel of 10,000 triangles costs, and how dense beds in it are, against the same of
                                                           planes or round; a block of its own in doc/vessels.md
+       scripts/study/vessels.py --large [--seeds N] ...   how long a hundred thousand in a cylinder take on two ranks; a block, too
 
 All of it: some minutes of one core. Runs are remembered in results/vessels; the table has what is there. Costs are measured anew, in turn.
 """
@@ -286,18 +287,44 @@ def mesh_table(options):
     return "\n".join(lines)
 
 
+# 30 diameters wide, 124 high; as soft as the limits of overlaps allow.
+LARGE = {"particles.youngs_modulus": "8e7", "contact.damping_ratio": "0.2155", "contact.friction": "0.3"}
+
+
+def large_table(options):
+    lines = ["| spheres | porosity | mean, worst overlap / r | particle-steps | of time: kernel, lists, waiting [%] | s, from the scene to the written pack |", "|---|---|---|---|---|---|"]
+    for seed in range(1, options.seeds + 1):
+        folder = options.results / "large"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "bed.toml").write_text(SCENE.format(diameter=0.6, height=2.48, radius=0.01, thickness=0.1, friction=0.3))
+        words = ["mpirun", "-n", "2", "--bind-to", "core", options.program, "bed.toml", "-q", "--force", *measuring.options_of({**LARGE, "seed": seed})]
+        done = subprocess.run([str(word) for word in words], cwd=folder, check=False, env=measuring.ENVIRONMENT, capture_output=True, text=True)
+        if done.returncode != 0:
+            common.fail(f"the cylinder of a hundred thousand ended with {done.returncode}: {done.stdout[-300:]}{done.stderr[-300:]}")
+        report = json.loads((folder / "bed.json").read_text())
+        got, cost = report["achieved"], {name: one["max"] for name, one in report["costs"].items()}
+        lists, waiting = (100.0 * cost[name] / cost["cpu"] for name in ("rebuilding", "waiting"))
+        kernel = 100.0 * (cost["stepping"] - cost["rebuilding"] - cost["waiting"] - cost["refreshing"]) / cost["cpu"]
+        lines.append(f"| {got['particles']:,} | {got['porosity_bulk']:.4f} | {got['mean_overlap']:.4f}, {report['rest']['worst_overlap']['value']:.3f} | "
+                     f"{got['particle_steps']:.2e} | {kernel:.0f}, {lists:.0f}, {waiting:.0f} | {report['provenance']['wall_seconds']:.0f} |")
+    return "\n".join([*lines, "", f"`\"balanced\"`, spheres of 20 mm in a cylinder of 0.6 m. {measuring.made_by('scripts/study/vessels.py --large')}."])
+
+
 def main():
     parser = argparse.ArgumentParser(description="Beds of equal spheres in cylinders.")
     parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS, help="D/d")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--friction", type=float, default=0.2)
     parser.add_argument("--mesh", action="store_true", help="vessels of triangles instead")
+    parser.add_argument("--large", action="store_true", help="a cylinder of a hundred thousand instead")
     options = measuring.study_options(parser, "vessels", "vessels.md")
-    if options.mesh:
-        text = mesh_table(options)
+    for name, table_of in (("mesh", mesh_table), ("large", large_table)):
+        if not getattr(options, name):
+            continue
+        text = table_of(options)
         print(text)
         if options.document.exists():
-            measuring.write_block(options.document, "mesh", text)
+            measuring.write_block(options.document, name, text)
         return
     folders = {(ratio, seed): made(options, ratio, seed) for ratio in options.ratios for seed in range(1, options.seeds + 1)}
     rows = [row_of(folder, ratio, seed, options.friction) for (ratio, seed), folder in folders.items()]
