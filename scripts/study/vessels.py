@@ -288,7 +288,7 @@ def mesh_table(options):
 
 
 # 30 diameters wide, 124 high; as soft as the limits of overlaps allow.
-LARGE = {"particles.youngs_modulus": "8e7", "contact.damping_ratio": "0.2155", "contact.friction": "0.3"}
+LARGE = {"particles.youngs_modulus": "9e7", "contact.damping_ratio": "0.24", "contact.friction": "0.3"}
 
 
 def large_table(options):
