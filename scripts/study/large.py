@@ -17,7 +17,7 @@ from pathlib import Path
 
 import measuring
 
-PAPER = {"fidelity": "paper"}
+PAPER = {"fidelity": "paper", "contact.tangential": "sliding"}
 SIDE, HEIGHT = 10.58, 0.48   # [m] of input/million.toml
 TALL = (0.25, 0.5, 1.0, 2.0)  # [m]
 TALL_RUNS = 5
