@@ -26,6 +26,8 @@ check_tidy() {
 import json, os, sys
 path = f"{sys.argv[1]}/compile_commands.json"
 entries = {entry["file"]: entry for entry in json.load(open(path))}
+for entry in entries.values():   # clang has no such option
+    entry["command"] = entry["command"].replace(" -fno-tree-loop-distribute-patterns", "")
 os.makedirs(f"{sys.argv[1]}/tidy", exist_ok=True)
 json.dump(list(entries.values()), open(f"{sys.argv[1]}/tidy/compile_commands.json", "w"))
 print("\n".join(sorted(entries, key=lambda file: "kernel_impl" not in file and "Unity" not in file)))   # the longest first
