@@ -6,9 +6,9 @@
 Beds: settled beds of the paper's spheres between walls (rotation on, time step 1e-4 s), written by
 tests/bench/bed_bench.cpp; all codes advance the same particles, equal ones and, packmpi and LAMMPS, Gaussian ones (sd 0.1
 of the mean); particle-steps a second, everything in. Brick: example 5.3 from nothing to the twelfth layer: wall time, and
-the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one; with --memory by friction
-with memory, packmpi by its presets. --quick: small
-scenes, to try the script. The tables replace the blocks of the document between "compare ..." markers. 22 to 60 minutes.
+the pack that came out by one analysis for all codes; packmpi with the paper's protocol and with a fast one. --memory: the
+brick alone, by friction with memory, packmpi by its presets and LAMMPS. --quick: small scenes, to try the script. The
+tables replace the blocks of the document between "compare ..." markers. 22 to 60 minutes.
 """
 import argparse
 import math
@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -110,22 +111,27 @@ def peer_brick(machine, options, code, seed):
     return seconds, positions, np.full(len(positions), RADIUS)
 
 
+def brick_makers(machine, options):
+    """Of each code and protocol what makes the pack of a seed."""
+    if options.memory:
+        ours = {f'packmpi, `"{name}"`': {"fidelity": name, "contact.tangential": "mindlin"} for name in ("balanced", "draft")}
+    else:
+        ours = {PAPER: {"fidelity": "paper", "layers.duration": options.duration}, FAST: {"fidelity": "balanced", **measuring.SLIDING}}
+    makers = {name: partial(packmpi_brick, machine, options, settings=settings) for name, settings in ours.items()}
+    return makers | {code: partial(peer_brick, machine, options, code) for code in peers_of(options)}
+
+
+def peers_of(options):
+    return ["LAMMPS"] if options.memory else ["LAMMPS", "LIGGGHTS"]
+
+
 def bricks(machine, options):
     """For each code and protocol the runs' seconds and measures."""
-    paper = {"fidelity": "paper", "layers.duration": options.duration}
-    fast = {"fidelity": "balanced", "contact.tangential": "sliding", "rest.wait": 0}   # to where "paper" ends, which is not at rest
-    makers = {PAPER: lambda seed: packmpi_brick(machine, options, seed, paper),
-              FAST: lambda seed: packmpi_brick(machine, options, seed, fast),
-              "LAMMPS": lambda seed: peer_brick(machine, options, "LAMMPS", seed),
-              "LIGGGHTS": lambda seed: peer_brick(machine, options, "LIGGGHTS", seed)}
-    if options.memory:
-        held = {name: {"fidelity": name, "contact.tangential": "mindlin"} for name in ("balanced", "draft")}
-        makers = {f'packmpi, `"{name}"`': lambda seed, changes=changes: packmpi_brick(machine, options, seed, changes) for name, changes in held.items()}
-        makers["LAMMPS"] = lambda seed: peer_brick(machine, options, "LAMMPS", seed)
+    makers = brick_makers(machine, options)
     found = {name: [] for name in makers}
     for seed in range(1, options.seeds + 1):
         for name, make in makers.items():
-            seconds, positions, radii = make(seed)
+            seconds, positions, radii = make(seed=seed)
             found[name].append({"seconds": seconds, **measuring.analyse(positions, radii, options.side, HEIGHT)})
             print(f"brick, seed {seed}, {name}: {seconds:.1f} s, phi_bulk {found[name][-1]['phi_bulk']:.4f}", flush=True)
     return found
@@ -176,12 +182,12 @@ def version(words, pattern):
 
 def blocks(options, rows, found):
     """What was measured, by name of its block in the document, each with its own date and commit."""
-    lammps = version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)")
-    liggghts = version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")
+    versions = {"LAMMPS": version(["lmp", "-h"], r"(\d+ \w{3} 20\d\d)"), "LIGGGHTS": version(["liggghts", "-h"], r"LIGGGHTS-PUBLIC ([\d.]+)")}
+    peers = ", ".join(f"{code} {versions[code]}" for code in peers_of(options))
     flags = "".join(f" --{name}" for name in ("quick", "memory") if getattr(options, name))
     friction = "friction with memory (LAMMPS: mindlin_rescale/force)" if options.memory else "sliding friction without history"
     made = (f"{measuring.made_by('scripts/study/compare.sh' + flags)}, all on core {options.core} in turn. "
-            f"LAMMPS {lammps}, LIGGGHTS {liggghts}, of Debian. Hertz contacts, the same damping, {friction}, rotation. ")
+            f"{peers}, of Debian. Hertz contacts, the same damping, {friction}, rotation. ")
     spread = " of each. Median (least to most); ratios are taken run by run."
     tables = {"compare brick with memory" if options.memory else "compare brick": (f"{options.seeds} seeds", brick_table(found) if found else [])}
     for name, wanted in (("compare beds", False), ("compare large beds", True)):

@@ -18,6 +18,10 @@ BOUNDS = {"phi_bulk": 0.002, "coordination": 0.05, "overlap": 0.20}
 INSTRUCTION_SETS = {"x86-64-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}, "x86-64-v3": {"avx2", "fma", "bmi2"}}
 
 
+# A preset of the sliding law, to where "paper" ends, which is not at rest.
+SLIDING = {"contact.tangential": "sliding", "rest.wait": "0"}
+
+
 def bare_scene(file, folder, more=()):
     """input/FILE.toml without its own fidelity, step and duration, so that these come from the preset that a run names: keys of
     a scene win over its preset's; and without the keys of `more`. The copy's path, in `folder`."""

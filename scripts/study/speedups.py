@@ -40,7 +40,7 @@ def settings(dimension):
         "soft layers, relaxation 0.9 s": {**soft, "dynamics.relaxation": "0.9"},
         "larger step": larger,
         "A2": {**larger, **down, "layers.duration": "0.35" if dimension == 3 else "0.5", "dynamics.relaxation": "0.6" if dimension == 3 else "1.0"},
-        "balanced": {"fidelity": "balanced", "contact.tangential": "sliding", "rest.wait": "0"},   # to where the reference ends
+        "balanced": {"fidelity": "balanced", **measuring.SLIDING},
     }
 
 

@@ -101,7 +101,6 @@ SCENES = {
 }
 WITHOUT_PRESETS = {"tiny_on"}
 PAPER = {"fidelity": "paper"}
-SLIDING = {"contact.tangential": "sliding", "rest.wait": "0"}   # presets of that law, to where "paper" ends, which is not at rest
 REFERENCE = "paper"
 
 
@@ -129,7 +128,7 @@ def layers(key, factor):
 
 # knob: {setting: options, or a function of the scene that gives them}
 KNOBS = {
-    "presets": {name: {"fidelity": name, **SLIDING} for name in ("balanced", "draft")},
+    "presets": {name: {"fidelity": name, **measuring.SLIDING} for name in ("balanced", "draft")},
     "step": {f"dt {dt}": {"dynamics.time_step": dt} for dt in ("0.25e-4", "0.5e-4", "2e-4", "2.4e-4", "3e-4")},
     "convergence": {f"slip time 2e-4, dt {dt}": {**viscous("2e-4"), "dynamics.time_step": dt}
                     for dt in ("0.25e-4", "0.5e-4", "1e-4")},

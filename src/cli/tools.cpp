@@ -13,17 +13,12 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "comm/session.hpp"
 
 namespace packmpi::cli {
 namespace {
 
 constexpr std::array<std::string_view, 3> tools{"render", "plot", "report"};
-
-// What launchers tell each of their processes: Open MPI, PMIx (srun), PMI (MPICH).
-bool is_launched() {
-  constexpr std::array names{"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
-  return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
-}
 
 // The package's main file: where cmake --install puts it, or the link that stands in the build folder.
 std::optional<std::string> find_package(const std::filesystem::path& folder) {
@@ -50,7 +45,7 @@ int fail(const char* tool, const std::string& words) {
 }  // namespace
 
 bool wants_tool(int argc, const char* const* argv) {
-  return argc > 1 && std::ranges::find(tools, argv[1]) != tools.end() && !is_launched();
+  return argc > 1 && std::ranges::find(tools, argv[1]) != tools.end() && !comm::launched();
 }
 
 int start_tool(int argc, const char* const* argv) {

@@ -35,12 +35,6 @@ class WithoutVariable {
   std::optional<std::string> value_;
 };
 
-/// Did a launcher (mpirun, srun) start this process? By what Open MPI, PMIx and PMI tell their processes.
-bool launched() {
-  constexpr std::array names{"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMI_RANK", "PMI_SIZE"};
-  return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
-}
-
 /// For Open MPI, in a program that no launcher started.
 void prepare_single_process() {
   // No daemon beside it, unless it spawns others: a tenth of a second less.
@@ -51,6 +45,11 @@ void prepare_single_process() {
 }
 
 }  // namespace
+
+bool launched() {
+  constexpr std::array names{"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"};
+  return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
+}
 
 void Session::start_petsc(PetscRanks ranks) {
   // PETSc keeps these. Its handler would turn our TERM and USR1, and every crash, into MPI_Abort without a stack.

@@ -29,6 +29,10 @@ class Session {
   bool owns_petsc_ = false;
 };
 
+/// Did a launcher (mpirun, srun) start this process? By what Open MPI, PMIx and PMI tell their processes. Local; needs
+/// no MPI.
+[[nodiscard]] bool launched();
+
 /// MPI_COMM_WORLD. Local.
 [[nodiscard]] MPI_Comm world();
 /// What MPI_Comm_c2f made a number of. Local.

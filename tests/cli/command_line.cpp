@@ -70,7 +70,8 @@ TEST(CommandLine, ToolsBeginBeforeMpiAndAlone) {
   const auto options = std::get<Request>(parse({"report", "a.hdf", "--size", "300"}));
   EXPECT_EQ(options.command, Command::tool);
   EXPECT_EQ(options.name, "report");
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) unsetenv(name);
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"})
+    unsetenv(name);
   EXPECT_TRUE(wants({"report", "a.hdf"}));
   EXPECT_TRUE(wants({"render", "a.hdf"}));
   EXPECT_FALSE(wants({"a.toml"}));

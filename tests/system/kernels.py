@@ -10,6 +10,9 @@ calls could be of another instruction set, and blocks are too short for memcpy.
 import re
 import subprocess
 import sys
+from collections import Counter
+
+KERNELS = 46   # of each instruction set and dimension: kernel_count of dynamics/kernel_impl.cpp
 
 
 def kernels(library):
@@ -18,7 +21,7 @@ def kernels(library):
     found = {}
     for name, body in re.findall(r"^[0-9a-f]+ <([^\n]+)>:\n((?:.+\n)+)", text, re.MULTILINE):
         if "::step<" in name and "StepData" in name:
-            found[re.search(r"(x86_64\w*|generic\w*)_([23])d::step<.*?(\{.*?\})>", name).groups()] = body
+            found[re.search(r"(x86_64\w*)_([23])d::step<.*?(\{.*?\})>", name).groups()] = body
     return found
 
 
@@ -39,11 +42,12 @@ def faults(kernel, body):
 
 def main():
     found = kernels(sys.argv[1])
-    levels = {(level, dimension) for level, dimension, _ in found}
+    builds = Counter(kernel[:2] for kernel in found)
     wrong = [f"{' '.join(kernel)}: {fault}" for kernel, body in found.items() for fault in faults(kernel, body)]
+    wrong += [f"{count} kernels of {build}, not {KERNELS}" for build, count in builds.items() if count != KERNELS]
     print("\n".join(wrong))
-    print(f"{len(found)} kernels of {sorted(levels)}, {len(wrong)} faults")
-    sys.exit(1 if wrong or len(found) < 46 else 0)
+    print(f"{len(found)} kernels of {len(builds)} builds, {len(wrong)} faults")
+    sys.exit(1 if wrong or not found else 0)
 
 
 if __name__ == "__main__":
