@@ -131,6 +131,16 @@ void agree_on(const Comm& comm, Action&& action);
 [[nodiscard]] std::vector<Parcel> exchange(const Comm& comm, std::vector<Parcel> outgoing,
                                            Purpose purpose = Purpose::other, int longest_message = 1 << 30);
 
+/// Fewest ranks at which relay() goes by way of others: from here on two short hops are fewer messages than half of
+/// all.
+inline constexpr int relay_ranks = 16;
+
+/// Collective. As exchange(), for parcels that go to nearly all ranks: on `fewest` ranks or more by way of one rank
+/// between, at most 2 (ceil(sqrt(P)) - 1) messages a rank in place of P - 1, each byte sent twice. Memory: what passes
+/// through a rank, about what it sends, is held beside what it sends and receives.
+[[nodiscard]] std::vector<Parcel> relay(const Comm& comm, std::vector<Parcel> outgoing,
+                                        Purpose purpose = Purpose::other, int fewest = relay_ranks);
+
 template <class Action>
 void agree_on(const Comm& comm, Action&& action) {
   std::optional<std::string> words;

@@ -27,7 +27,7 @@ class Mailbox {
   [[nodiscard]] std::vector<Item> deliver(const comm::Comm& comm) {
     std::vector<Item> received;
     if (comm.size() == 1) return received;  // nobody else to hear from
-    for (const comm::Parcel& parcel : comm::exchange(comm, pack(), comm::Purpose::insertion)) {
+    for (const comm::Parcel& parcel : comm::relay(comm, pack(), comm::Purpose::insertion)) {
       const std::size_t old = received.size();
       received.resize(old + parcel.bytes.size() / sizeof(Item));
       std::memcpy(received.data() + old, parcel.bytes.data(), parcel.bytes.size());

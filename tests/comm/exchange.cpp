@@ -59,6 +59,34 @@ void play(const Comm& comm, const Pattern& pattern, int longest_message = 1 << 3
   check(comm, pattern, exchange(comm, outgoing(comm, pattern), Purpose::other, longest_message));
 }
 
+/// Through ranks between, on any number of ranks.
+void play_relayed(const Comm& comm, const Pattern& pattern) {
+  check(comm, pattern, relay(comm, outgoing(comm, pattern), Purpose::other, 1));
+}
+
+TEST(Relay, BringsWhatAnExchangeBrings) {
+  const Comm comm(MPI_COMM_WORLD);
+  for (std::uint64_t round = 0; round < 100; ++round) {
+    play_relayed(comm, {round, comm.size(), static_cast<unsigned>(round * 37 % 101), round % 10 == 0 ? 20000U : 64U});
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  play_relayed(comm, {1, comm.size(), 100, 0});
+  play_relayed(comm, {2, comm.size(), 0, 0});
+}
+
+TEST(Relay, SendsAtMostTwoRowsOfMessages) {
+  const Comm comm(MPI_COMM_WORLD);
+  int width = 1;
+  while (width * width < comm.size()) ++width;
+  const auto sent = [&](Purpose purpose) { return comm.counters().sent[static_cast<std::size_t>(purpose)]; };
+  (void)relay(comm, outgoing(comm, {1, comm.size(), 100, 50}), Purpose::output, 1);
+  EXPECT_LE(sent(Purpose::output).messages, 2 * (width - 1));
+  const std::int64_t all = comm.sum(sent(Purpose::output).messages);
+  EXPECT_GE(all, comm.size() - 1);
+  (void)relay(comm, outgoing(comm, {1, comm.size(), 100, 50}), Purpose::insertion, comm.size() + 1);
+  EXPECT_EQ(sent(Purpose::insertion).messages, comm.size() - 1);
+}
+
 TEST(Exchange, NobodySends) {
   const Comm comm(MPI_COMM_WORLD);
   for (std::uint64_t round = 0; round < 20; ++round) play(comm, {round, comm.size(), 0, 0});
