@@ -106,14 +106,15 @@ struct Slab {
   hsize_t total, offset, count;
 };
 
-/// A dataset to be: rows of `width` elements (width 1: one axis). `bytes` makes `count` of this rank's rows, from row
-/// `first` of them on, when their turn comes.
+/// A dataset to be: rows of `width` elements (width 1: one axis). Of this rank's rows, `held` are at hand, the next
+/// ones in the order of the file; `bytes` makes `count` of these, from the `first` of them on.
 struct Column {
   std::string path;
   std::string unit;  ///< "": no unit attribute
   Handle type;
   hsize_t width;
   Slab slab;
+  std::function<std::size_t()> held;
   std::function<std::vector<std::byte>(std::size_t first, std::size_t count)> bytes;
 };
 
@@ -128,7 +129,8 @@ void create_dataset(hid_t file, const Column& column);
 /// Where in the file this rank's rows begin [bytes], for a dataset that begins at `place`.
 [[nodiscard]] std::int64_t place_of_rows(const Column& column, std::int64_t place);
 
-/// A column whose rows are get(rows[k]): a T or an array of T. `rows` must live until the column is written.
+/// A column whose rows are get(rows[k]): a T or an array of T; `rows`, which must live until the column is written, has
+/// those at hand.
 template <class T, class Row, class Get>
 [[nodiscard]] Column make_column(std::string path, std::string unit, const Slab& slab, const std::vector<Row>& rows,
                                  Get get) {
@@ -148,6 +150,7 @@ template <class T, class Row, class Get>
           Handle(H5Tcopy(type_of<T>()), H5Tclose, "copy a type"),
           row_width<T, Cell>,
           slab,
+          [&rows] { return rows.size(); },
           std::move(bytes)};
 }
 

@@ -29,6 +29,38 @@ struct IdBlocks {
   }
 };
 
+/// Piece `number` of every rank's block: `length` ids of it, fewer at its end.
+struct IdPiece {
+  IdBlocks blocks;
+  std::int64_t length;
+  std::int64_t number;
+
+  [[nodiscard]] GlobalId begin(Rank rank) const {
+    return std::min(blocks.begin(rank) + number * length, blocks.begin(rank + 1));
+  }
+  [[nodiscard]] GlobalId end(Rank rank) const {
+    return std::min(blocks.begin(rank) + (number + 1) * length, blocks.begin(rank + 1));
+  }
+  /// Precondition: 0 <= id < total.
+  [[nodiscard]] bool has(GlobalId id) const { return (id - blocks.begin(blocks.owner(id))) / length == number; }
+};
+
+/// The blocks in pieces of at least `least` ids, so few that looking through all rows for each of them is cheap.
+struct IdPieces {
+  IdBlocks blocks;
+  std::int64_t least;
+
+  [[nodiscard]] std::int64_t length() const {
+    constexpr std::int64_t most_pieces = 16;
+    const std::int64_t longest = blocks.total / blocks.ranks + 1;
+    return std::max(least, (longest + most_pieces - 1) / most_pieces);
+  }
+  [[nodiscard]] std::int64_t count() const {  // the same on all ranks
+    return std::max<std::int64_t>(1, (blocks.total / blocks.ranks + length()) / length());
+  }
+  [[nodiscard]] IdPiece piece(std::int64_t number) const { return {blocks, length(), number}; }
+};
+
 /// Rows that stayed here, then those that came.
 template <class Row, class What>
 void for_each_row(const std::vector<Row>& own, const std::vector<comm::Parcel>& parcels, What&& what) {
@@ -85,25 +117,49 @@ template <class Row>
   return parcels;
 }
 
-/// Collective. Each row goes to the owner of row.*key; the rows that came here, by that key (equal keys in no promised
-/// order). Cost: O(rows) if every key of this rank's block came once, else they are sorted.
+/// Collective. Each row goes to the owner of row.*key, which is in `piece` on all ranks; the rows that came here, by
+/// that key (equal keys in no promised order). Cost: O(rows) if every key of this rank's piece came once, else they are
+/// sorted.
 template <class Row>
-[[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
+[[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdPiece& piece, std::vector<Row> rows,
                                        GlobalId Row::*key) {
   static_assert(std::is_trivially_copyable_v<Row>);
   const std::vector<comm::Parcel> incoming =
-      comm::exchange(comm, take_foreign(comm.rank(), blocks, rows, key), comm::Purpose::output);
+      comm::relay(comm, take_foreign(comm.rank(), piece.blocks, rows, key), comm::Purpose::output);
   std::size_t count = rows.size();
   for (const comm::Parcel& parcel : incoming) count += parcel.bytes.size() / sizeof(Row);
   std::vector<Row> all(count);
-  const GlobalId begin = blocks.begin(comm.rank());
-  if (static_cast<GlobalId>(count) == blocks.begin(comm.rank() + 1) - begin &&
-      place_by_key(rows, incoming, begin, key, all)) {
+  const GlobalId begin = piece.begin(comm.rank());
+  if (static_cast<GlobalId>(count) == piece.end(comm.rank()) - begin && place_by_key(rows, incoming, begin, key, all)) {
     return all;
   }
   std::size_t at = 0;
   for_each_row(rows, incoming, [&](const Row& row) { all[at++] = row; });
   std::sort(all.begin(), all.end(), [key](const Row& a, const Row& b) { return a.*key < b.*key; });
+  return all;
+}
+
+/// The same, of all ids at once.
+template <class Row>
+[[nodiscard]] std::vector<Row> scatter(const comm::Comm& comm, const IdBlocks& blocks, std::vector<Row> rows,
+                                       GlobalId Row::*key) {
+  return scatter(comm, IdPiece{blocks, std::max<std::int64_t>(1, blocks.total), 0}, std::move(rows), key);
+}
+
+/// Collective. How many rows this rank is going to write, of counts[r] that each rank has for rank r.
+[[nodiscard]] inline std::int64_t count_incoming(const comm::Comm& comm, const std::map<Rank, std::int64_t>& counts) {
+  std::vector<comm::Parcel> parcels;
+  parcels.reserve(counts.size());
+  for (const auto& [to, count] : counts) {
+    parcels.push_back({to, std::vector<std::byte>(sizeof count)});
+    std::memcpy(parcels.back().bytes.data(), &count, sizeof count);
+  }
+  std::int64_t all = 0;
+  for (const comm::Parcel& parcel : comm::relay(comm, std::move(parcels), comm::Purpose::output)) {
+    std::int64_t count = 0;
+    std::memcpy(&count, parcel.bytes.data(), sizeof count);
+    all += count;
+  }
   return all;
 }
 

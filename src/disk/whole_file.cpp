@@ -8,7 +8,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string_view>
 
 #include "disk/files.hpp"
 #include "disk/seal.hpp"
@@ -61,34 +63,66 @@ Seal make_frame(const std::string& path, const std::vector<h5::Column>& plan, co
   return seal;
 }
 
-/// This rank's rows [first, first + most) of a column, or those of them there are. Their digest.
-std::uint64_t write_some(Descriptor& disk, const h5::Column& column, std::int64_t place, std::size_t first,
-                         std::size_t most) {
-  if (first >= column.slab.count) return 0;
-  const std::size_t each = h5::row_bytes(column);
-  const std::vector<std::byte> bytes = column.bytes(first, std::min<std::size_t>(most, column.slab.count - first));
-  disk.write_at(bytes, h5::place_of_rows(column, place) + static_cast<std::int64_t>(first * each));
-  return rows_digest(bytes, each, static_cast<std::int64_t>(column.slab.offset + first));
-}
+/// This rank's rows on their way to the disk.
+class RowWriter {
+ public:
+  RowWriter(const std::string& path, const std::vector<h5::Column>& plan, const std::vector<std::int64_t>& places)
+      : disk_(path, O_WRONLY), plan_(&plan), places_(&places), written_(plan.size()), digests_(plan.size()) {}
 
-/// This rank's rows, down to the disk, a few of all columns at a time: they are parts of the same records, which are
-/// then still in the cache. Their digests, a column each.
-std::vector<std::int64_t> write_rows(const std::string& path, const std::vector<h5::Column>& plan,
-                                     const std::vector<std::int64_t>& places) {
-  constexpr std::size_t at_a_time = 4096;
-  std::vector<std::uint64_t> digests(plan.size());  // these sums wrap
-  Descriptor disk(path, O_WRONLY);
-  std::size_t most = 0;
-  for (const h5::Column& column : plan) most = std::max<std::size_t>(most, column.slab.count);
-  for (std::size_t first = 0; first < most; first += at_a_time) {
-    for (std::size_t k = 0; k < plan.size(); ++k) {
-      digests[k] += write_some(disk, plan[k], places[k], first, at_a_time);
+  /// The rows at hand, a few of all columns at a time: they are parts of the same records, which are then still in the
+  /// cache.
+  void write() {
+    constexpr std::size_t at_a_time = 4096;
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < plan_->size(); ++k) {
+      most = std::max(most, at_hand(k));
+      if (written_[k] + at_hand(k) > (*plan_)[k].slab.count) fail_count(k, "more");
     }
+    for (std::size_t first = 0; first < most; first += at_a_time) {
+      for (std::size_t k = 0; k < plan_->size(); ++k) write_some(k, first, at_a_time);
+    }
+    for (std::size_t k = 0; k < plan_->size(); ++k) written_[k] += at_hand(k);
   }
-  disk.sync();
-  disk.close();
-  return {digests.begin(), digests.end()};
-}
+
+  /// Down to the disk. The digests of the rows, a column each.
+  [[nodiscard]] std::vector<std::int64_t> finish() {
+    for (std::size_t k = 0; k < plan_->size(); ++k) {
+      if (written_[k] != (*plan_)[k].slab.count) fail_count(k, "fewer");
+    }
+    disk_.sync();
+    disk_.close();
+    return {digests_.begin(), digests_.end()};
+  }
+
+ private:
+  /// None of a column that is complete: it had them all with an earlier piece.
+  [[nodiscard]] std::size_t at_hand(std::size_t k) const {
+    return written_[k] == (*plan_)[k].slab.count ? 0 : (*plan_)[k].held();
+  }
+
+  /// Of column k the rows at hand [first, first + most), or those of them there are.
+  void write_some(std::size_t k, std::size_t first, std::size_t most) {
+    const h5::Column& column = (*plan_)[k];
+    const std::size_t held = at_hand(k);
+    if (first >= held) return;
+    const std::size_t each = h5::row_bytes(column);
+    const std::size_t row = written_[k] + first;
+    const std::vector<std::byte> bytes = column.bytes(first, std::min(most, held - first));
+    disk_.write_at(bytes, h5::place_of_rows(column, (*places_)[k]) + static_cast<std::int64_t>(row * each));
+    digests_[k] += rows_digest(bytes, each, static_cast<std::int64_t>(column.slab.offset + row));
+  }
+
+  [[noreturn]] void fail_count(std::size_t k, std::string_view what) const {
+    throw Error(ExitCode::numerical_failure,
+                fmt::format("{} rows came for {} than were counted", what, (*plan_)[k].path));
+  }
+
+  Descriptor disk_;
+  const std::vector<h5::Column>* plan_;
+  const std::vector<std::int64_t>* places_;
+  std::vector<std::size_t> written_;    // rows of each column
+  std::vector<std::uint64_t> digests_;  // these sums wrap
+};
 
 /// The places of all columns' rows, on every rank.
 std::vector<std::int64_t> share_places(const comm::Comm& comm, const Seal& seal, std::size_t columns) {
@@ -110,14 +144,20 @@ void write_seal(const std::string& path, Seal seal, const std::vector<std::int64
 
 /// The file under its temporary name.
 void write_temporary(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
-                     const std::function<void(hid_t)>& frame) {
+                     const std::function<void(hid_t)>& frame, const Pieces& pieces) {
   Seal seal;
   together(comm, path, [&] {
     if (comm.rank() == 0) seal = make_frame(path, plan, frame);
   });
   const std::vector<std::int64_t> places = share_places(comm, seal, plan.size());
+  std::optional<RowWriter> rows;
+  together(comm, path, [&] { rows.emplace(path, plan, places); });
+  for (std::int64_t piece = 0; piece < pieces.count; ++piece) {
+    pieces.bring(piece);
+    together(comm, path, [&] { rows->write(); });
+  }
   std::vector<std::int64_t> digests(plan.size());
-  together(comm, path, [&] { digests = write_rows(path, plan, places); });
+  together(comm, path, [&] { digests = rows->finish(); });
   comm.sum(std::span(digests));
   together(comm, path, [&] {
     if (comm.rank() == 0) write_seal(path, seal, digests);
@@ -127,11 +167,11 @@ void write_temporary(const comm::Comm& comm, const std::string& path, const std:
 }  // namespace
 
 void write_whole_file(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
-                      const std::function<void(hid_t)>& frame) {
+                      const std::function<void(hid_t)>& frame, const Pieces& pieces) {
   const h5::Quiet quiet;
   const std::string temporary = path + ".tmp";
   try {
-    write_temporary(comm, temporary, plan, frame);
+    write_temporary(comm, temporary, plan, frame, pieces);
     together(comm, path, [&] {
       if (comm.rank() == 0) commit(temporary, path);
     });

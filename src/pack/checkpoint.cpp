@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -25,14 +26,14 @@ struct RecordRow {
 
 using Stores = std::span<const particles::Store* const>;
 
-std::vector<RecordRow> rows_here(Stores stores) {
-  std::size_t count = 0;
-  for (const particles::Store* store : stores) count += static_cast<std::size_t>(store->owned());
+std::vector<RecordRow> rows_here(Stores stores, const disk::IdPiece& piece) {
   std::vector<RecordRow> rows;
-  rows.reserve(count);
+  rows.reserve(static_cast<std::size_t>(piece.length));
   for (const particles::Store* store : stores) {
     for (LocalIndex i = 0; i < store->owned(); ++i) {
-      RecordRow row{store->ids()[static_cast<std::size_t>(i)], {}};
+      const GlobalId id = store->ids()[static_cast<std::size_t>(i)];
+      if (!piece.has(id)) continue;
+      RecordRow row{id, {}};
       std::copy_n(store->record(i), store->layout().used_doubles(), row.values.begin());
       rows.push_back(row);
     }
@@ -46,8 +47,24 @@ std::uint64_t digest_of(const comm::Comm& comm, Stores stores) {
   return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(mine)));  // mod 2^64
 }
 
-std::uint64_t digest_of_histories(const comm::Comm& comm, const Histories& histories) {
-  return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(digest(histories))));  // mod 2^64
+/// What is known of contacts before any of them is on its way.
+struct Counted {
+  disk::h5::Slab slab{};     ///< of this rank in the file
+  std::uint64_t digest = 0;  ///< of all, whatever their order
+};
+
+/// Collective.
+Counted count_histories(const comm::Comm& comm, const disk::IdBlocks& blocks, const HistoriesHere& histories) {
+  std::map<Rank, std::int64_t> counts;
+  std::uint64_t digests = 0;
+  histories.each([&](const HistoryRow& row) {
+    ++counts[blocks.owner(row.holder)];
+    digests += digest(row, histories.features);
+  });
+  const std::int64_t mine = disk::count_incoming(comm, counts);
+  return {.slab = {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)),
+                   static_cast<hsize_t>(mine)},
+          .digest = static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(digests)))};  // mod 2^64
 }
 
 /// `width` doubles of each row's values from `begin` on.
@@ -69,6 +86,7 @@ disk::h5::Column values_column(const std::string& path, std::string_view unit, c
           disk::h5::Handle(H5Tcopy(disk::h5::type_of<double>()), H5Tclose, "copy a type"),
           wide,
           slab,
+          [&rows] { return rows.size(); },
           bytes};
 }
 
@@ -105,13 +123,29 @@ struct Digests {
   std::optional<std::uint64_t> contacts;  ///< none: no contacts in the file
 };
 
-/// Collective. To the ranks that write them: by holder, and of a holder by the other end. Where they lie in the file.
-disk::h5::Slab bring(const comm::Comm& comm, const disk::IdBlocks& blocks, Histories& histories) {
-  if (!histories.any()) return {};
-  histories.rows = scatter(comm, blocks, std::move(histories.rows), &HistoryRow::holder);
-  sort_by_ends(histories.rows);
-  const auto mine = std::ssize(histories.rows);
-  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), histories.rows.size()};
+/// Collective. The particles of a piece, to the ranks that write them.
+std::vector<RecordRow> bring(const comm::Comm& comm, const disk::IdPiece& piece, Stores stores) {
+  std::vector<RecordRow> rows = scatter(comm, piece, rows_here(stores, piece), &RecordRow::id);
+  comm::agree_on(comm, [&] {
+    const bool all = static_cast<GlobalId>(rows.size()) == piece.end(comm.rank()) - piece.begin(comm.rank());
+    const auto out_of_order = [](const RecordRow& a, const RecordRow& b) { return a.id >= b.id; };
+    if (!all || std::ranges::adjacent_find(rows, out_of_order) != rows.end()) {
+      throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
+    }
+  });
+  return rows;
+}
+
+/// Collective. What their contacts remember: by holder, and of a holder by the other end.
+std::vector<HistoryRow> bring(const comm::Comm& comm, const disk::IdPiece& piece, const HistoriesHere& histories) {
+  std::vector<HistoryRow> rows;
+  if (!histories.any()) return rows;
+  histories.each([&](const HistoryRow& row) {
+    if (piece.has(row.holder)) rows.push_back(row);
+  });
+  rows = scatter(comm, piece, std::move(rows), &HistoryRow::holder);
+  sort_by_ends(rows);
+  return rows;
 }
 
 void write_bytes(hid_t file, const std::string& path, const std::string& text) {
@@ -136,27 +170,31 @@ void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const Ru
 }  // namespace
 
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
-                      const RunState& state, Histories histories) {
+                      const RunState& state, const HistoriesHere& histories, std::int64_t piece) {
   const Occupation now("the checkpoint on its way to the file");
   const disk::h5::Quiet quiet;
-  Digests digests{.particles = digest_of(comm, stores), .contacts = {}};
-  if (histories.any()) digests.contacts = digest_of_histories(comm, histories);
   const disk::IdBlocks blocks{state.progress.count, comm.size()};
-  std::vector<RecordRow> rows = scatter(comm, blocks, rows_here(stores), &RecordRow::id);
   const GlobalId begin = blocks.begin(comm.rank());
-  const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), static_cast<hsize_t>(begin), rows.size()};
-  comm::agree_on(comm, [&] {
-    const bool all = static_cast<GlobalId>(rows.size()) == blocks.begin(comm.rank() + 1) - begin;
-    const auto out_of_order = [](const RecordRow& a, const RecordRow& b) { return a.id >= b.id; };
-    if (!all || std::ranges::adjacent_find(rows, out_of_order) != rows.end()) {
-      throw Error(ExitCode::numerical_failure, "particles were lost; no checkpoint is written");
-    }
-  });
-  const disk::h5::Slab contacts = bring(comm, blocks, histories);
+  const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), static_cast<hsize_t>(begin),
+                            static_cast<hsize_t>(blocks.begin(comm.rank() + 1) - begin)};
+  Digests digests{.particles = digest_of(comm, stores), .contacts = {}};
+  Counted contacts;
+  if (histories.any()) {
+    contacts = count_histories(comm, blocks, histories);
+    digests.contacts = contacts.digest;
+  }
+  std::vector<RecordRow> rows;
+  Histories touching{.features = histories.features, .rows = {}};
   std::vector<disk::h5::Column> plan;
   add_particles(slab, rows, stores.front()->layout(), plan);
-  add_histories(contacts, histories, plan);
-  disk::write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, plan, state, digests); });
+  add_histories(contacts.slab, touching, plan);
+  const disk::IdPieces pieces{blocks, piece};
+  const disk::Pieces supply{.count = pieces.count(), .bring = [&](std::int64_t k) {
+                              rows = bring(comm, pieces.piece(k), stores);
+                              touching.rows = bring(comm, pieces.piece(k), histories);
+                            }};
+  disk::write_whole_file(
+      comm, path, plan, [&](hid_t file) { write_frame(file, plan, state, digests); }, supply);
 }
 
 std::int64_t checkpoint_bytes(const particles::Layout& layout, const RunState& state, const scene::Features& features,

@@ -1,8 +1,10 @@
 /// A run between two steps, on the disk: everything that steers it, nothing that depends on the ranks (design:
 /// doc/file_format.md).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -34,20 +36,36 @@ struct HistoryRow {
   std::array<double, scene::most_stored_doubles> values{};  ///< in the order of scene::storings
 };
 
+/// The memory of the contacts of a scene where it is at home: each() tells the rows of this rank one by one, in any
+/// order, as often as it is asked. No memory in `features`: none.
+struct HistoriesHere {
+  scene::Features features{};
+  std::function<void(const std::function<void(const HistoryRow&)>& see)> each;
+
+  [[nodiscard]] bool any() const noexcept { return features.memory; }
+};
+
 /// The memory of the contacts of a scene, each of them on one rank. No rows and no memory in `features`: none.
 struct Histories {
   scene::Features features{};  ///< of the scene: dimension, memory and rolling say what is stored
   std::vector<HistoryRow> rows;
 
   [[nodiscard]] bool any() const noexcept { return features.memory; }
+  /// These rows must live as long.
+  [[nodiscard]] HistoriesHere here() const {
+    return {.features = features, .each = [this](const auto& see) { std::ranges::for_each(rows, see); }};
+  }
 };
+
+/// Rows on their way to the ranks that write them come in up to 16 pieces of at least so many particles of a rank.
+inline constexpr std::int64_t rows_at_a_time = 16384;
 
 /// Collective. Writes PATH whole or not at all: temporary, fsync, rename, fsync of the folder. The bits of the records
 /// are written as they are; rows by id, whatever the ranks; nothing is gathered. The particles are the owned ones of
-/// all `stores`, which have one layout; histories in any order. Throws as write_pack(). Memory: about 200 bytes a
-/// particle of this rank's share, and 150 a contact that remembers, for the time of the call.
+/// all `stores`, which have one layout. Throws as write_pack(). Memory, for the time of the call: of a sixteenth of
+/// this rank's share, or of `piece` particles if that is more, 350 bytes a particle and 250 a contact that remembers.
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
-                      const RunState& state, Histories histories = {});
+                      const RunState& state, const HistoriesHere& histories = {}, std::int64_t piece = rows_at_a_time);
 
 /// Bytes of the file that write_checkpoint() would write of state.progress.count particles and so many contacts that
 /// remember, if those of `features` do. Rank-local. Throws Error(io_failure).

@@ -80,17 +80,13 @@ void check_once(const std::vector<HistoryRow>& sorted) {
   refuse_contacts(fmt::format("the contact of particle {} with {} is there twice", twice->holder, twice->other));
 }
 
-std::uint64_t digest(const Histories& histories) {
-  const std::size_t stored = static_cast<std::size_t>(scene::stored_doubles(histories.features)) * sizeof(double);
+std::uint64_t digest(const HistoryRow& row, const scene::Features& features) {
+  const std::size_t stored = static_cast<std::size_t>(scene::stored_doubles(features)) * sizeof(double);
   std::array<char, 2 * sizeof(GlobalId) + sizeof(HistoryRow::values)> bytes{};
-  std::uint64_t sum = 0;
-  for (const HistoryRow& row : histories.rows) {
-    std::memcpy(bytes.data(), &row.holder, sizeof row.holder);
-    std::memcpy(bytes.data() + sizeof row.holder, &row.other, sizeof row.other);
-    std::memcpy(bytes.data() + 2 * sizeof(GlobalId), row.values.data(), stored);
-    sum += fnv_add(fnv_start, std::string_view(bytes.data(), 2 * sizeof(GlobalId) + stored));
-  }
-  return sum;
+  std::memcpy(bytes.data(), &row.holder, sizeof row.holder);
+  std::memcpy(bytes.data() + sizeof row.holder, &row.other, sizeof row.other);
+  std::memcpy(bytes.data() + 2 * sizeof(GlobalId), row.values.data(), stored);
+  return fnv_add(fnv_start, std::string_view(bytes.data(), 2 * sizeof(GlobalId) + stored));
 }
 
 }  // namespace packmpi::pack

@@ -26,7 +26,7 @@ void check_once(const std::vector<HistoryRow>& sorted);
 /// Local.
 void check_springs(const Histories& histories, const scene::Scene& scene);
 
-/// A number of the bits of these rows that depends on no order: sums over ranks, mod 2^64, are that of all rows. Local.
-[[nodiscard]] std::uint64_t digest(const Histories& histories);
+/// A number of the bits of a row: sums over all rows, mod 2^64, depend on no order and no ranks. Local.
+[[nodiscard]] std::uint64_t digest(const HistoryRow& row, const scene::Features& features);
 
 }  // namespace packmpi::pack

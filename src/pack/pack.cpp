@@ -9,12 +9,16 @@
 namespace packmpi::pack {
 
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
-                const report::RunRecord& record) {
+                const report::RunRecord& record, std::int64_t piece) {
   const Occupation now("the pack on its way to the file");
   const disk::h5::Quiet quiet;
-  const PackBlock block = make_block(comm, parts);
+  PackBlock block = make_block(comm, parts);
   const std::vector<disk::h5::Column> plan = plan_columns(block);
-  disk::write_whole_file(comm, path, plan, [&](hid_t file) { write_frame(file, block, plan, record); });
+  const disk::IdPieces pieces{{static_cast<std::int64_t>(block.particles.total), comm.size()}, piece};
+  const disk::Pieces supply{.count = pieces.count(),
+                            .bring = [&](std::int64_t k) { bring_rows(comm, parts, pieces.piece(k), block); }};
+  disk::write_whole_file(
+      comm, path, plan, [&](hid_t file) { write_frame(file, block, plan, record); }, supply);
 }
 
 std::int64_t pack_bytes(const report::RunRecord& record, bool rotation, std::int64_t particles,

@@ -42,9 +42,10 @@ struct PackParts {
 /// Collective. Writes PATH (NAME.hdf): to PATH.tmp, flushed, fsync'ed, renamed. Rows sorted by id whatever the ranks;
 /// nothing is gathered. Throws on every rank: Error(io_failure) with the reason (full disk, permissions), or
 /// Error(numerical_failure) if the ids are not 0 .. N-1; then PATH is untouched and PATH.tmp is gone.
-/// Memory: about 200 bytes a particle of this rank's share, for the time of the call.
+/// Memory, for the time of the call: of a sixteenth of this rank's share, or of `piece` particles if that is more, 350
+/// bytes a particle and 500 a contact.
 void write_pack(const comm::Comm& comm, const std::string& path, const PackParts& parts,
-                const report::RunRecord& record);
+                const report::RunRecord& record, std::int64_t piece = rows_at_a_time);
 
 /// Bytes of the file that write_pack() would write of so many particles, contacts (none: no /contacts) and columns of
 /// the maps (0: no /columns). Rank-local. Throws Error(io_failure).

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <tuple>
 
-#include "disk/scatter.hpp"
 #include "report/fields.hpp"
 #include "scene/mixture.hpp"
 
@@ -16,13 +17,15 @@ std::int32_t component_in(const particles::Store& store, LocalIndex i) {
   return store.layout().component < 0 ? 0 : scene::component_of(store.substance(i).code);
 }
 
-std::vector<ParticleRow> rows_here(const PackParts& parts) {
+std::vector<ParticleRow> rows_here(const PackParts& parts, const disk::IdPiece& piece) {
   const particles::Store& store = *parts.store;
-  std::vector<ParticleRow> rows(static_cast<std::size_t>(store.owned()));
+  std::vector<ParticleRow> rows;
+  rows.reserve(static_cast<std::size_t>(std::min<std::int64_t>(store.owned(), piece.length)));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    rows[k] = {store.ids()[k],  store.position(i), store.velocity(i), store.spin(i),
-               store.radius(i), parts.layer[k],    parts.contacts[k], component_in(store, i)};
+    if (!piece.has(store.ids()[k])) continue;
+    rows.push_back({store.ids()[k], store.position(i), store.velocity(i), store.spin(i), store.radius(i),
+                    parts.layer[k], parts.contacts[k], component_in(store, i)});
   }
   return rows;
 }
@@ -32,9 +35,10 @@ std::vector<ParticleRow> rows_here(const PackParts& parts) {
               fmt::format("the ids of the {} particles are not 0 .. {}: {} {}", total, total - 1, id, what));
 }
 
-void check_range(const std::vector<ParticleRow>& rows, std::int64_t total) {
-  for (const ParticleRow& row : rows) {
-    if (row.id < 0 || row.id >= total) fail_ids(total, "is out of range", row.id);
+void check_range(const particles::Store& store, std::int64_t total) {
+  for (LocalIndex i = 0; i < store.owned(); ++i) {
+    const GlobalId id = store.ids()[static_cast<std::size_t>(i)];
+    if (id < 0 || id >= total) fail_ids(total, "is out of range", id);
   }
 }
 
@@ -48,16 +52,27 @@ void check_complete(const std::vector<ParticleRow>& rows, GlobalId begin, Global
   if (expected < end) fail_ids(total, "is missing", expected);
 }
 
-disk::h5::Slab slab_of(const comm::Comm& comm, std::size_t count) {
-  const auto mine = static_cast<std::int64_t>(count);
-  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), count};
+disk::h5::Slab slab_of(const comm::Comm& comm, std::int64_t mine) {
+  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), static_cast<hsize_t>(mine)};
 }
 
-/// Collective. To the ranks that write them, in the order of the file; null: none.
-std::vector<ContactRow> bring_contacts(const comm::Comm& comm, const disk::IdBlocks& blocks,
+/// Collective. Of contacts (null: none), which the writers of their first particles write.
+disk::h5::Slab slab_of(const comm::Comm& comm, const disk::IdBlocks& blocks, const std::vector<ContactRow>* rows) {
+  std::map<Rank, std::int64_t> counts;
+  if (rows != nullptr) {
+    for (const ContactRow& row : *rows) ++counts[blocks.owner(row.first)];
+  }
+  return slab_of(comm, disk::count_incoming(comm, counts));
+}
+
+/// Collective. Those of a piece to the ranks that write them, in the order of the file; null: none.
+std::vector<ContactRow> bring_contacts(const comm::Comm& comm, const disk::IdPiece& piece,
                                        const std::vector<ContactRow>* rows) {
-  std::vector<ContactRow> mine =
-      scatter(comm, blocks, rows != nullptr ? *rows : std::vector<ContactRow>{}, &ContactRow::first);
+  std::vector<ContactRow> mine;
+  if (rows != nullptr) {
+    std::ranges::copy_if(*rows, std::back_inserter(mine), [&](const ContactRow& row) { return piece.has(row.first); });
+  }
+  mine = scatter(comm, piece, std::move(mine), &ContactRow::first);
   std::ranges::sort(mine, [](const ContactRow& a, const ContactRow& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });
@@ -196,26 +211,28 @@ PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
   block.rotation = parts.store->layout().rotation;
   block.mixture = parts.store->layout().component >= 0;
   const std::int64_t total = comm.sum(std::int64_t{parts.store->owned()});
-  std::vector<ParticleRow> rows = rows_here(parts);
-  comm::agree_on(comm, [&] { check_range(rows, total); });
+  comm::agree_on(comm, [&] { check_range(*parts.store, total); });
 
   const disk::IdBlocks blocks{total, comm.size()};
-  block.rows = scatter(comm, blocks, std::move(rows), &ParticleRow::id);
-  comm::agree_on(comm,
-                 [&] { check_complete(block.rows, blocks.begin(comm.rank()), blocks.begin(comm.rank() + 1), total); });
-  block.particles = slab_of(comm, block.rows.size());
-
+  block.particles = slab_of(comm, blocks.begin(comm.rank() + 1) - blocks.begin(comm.rank()));
   block.has_contacts = parts.contact_rows != nullptr;
   if (block.has_contacts) {
     block.features = parts.features;
-    block.contact_rows = bring_contacts(comm, blocks, parts.contact_rows);
-    block.contacts = slab_of(comm, block.contact_rows.size());
-    block.wall_rows = bring_contacts(comm, blocks, parts.wall_rows);
-    block.walls = slab_of(comm, block.wall_rows.size());
+    block.contacts = slab_of(comm, blocks, parts.contact_rows);
+    block.walls = slab_of(comm, blocks, parts.wall_rows);
   }
   block.maps = parts.maps;
-  if (block.maps != nullptr) block.columns = slab_of(comm, block.maps->top.size());
+  if (block.maps != nullptr) block.columns = slab_of(comm, std::ssize(block.maps->top));
   return block;
+}
+
+void bring_rows(const comm::Comm& comm, const PackParts& parts, const disk::IdPiece& piece, PackBlock& block) {
+  block.rows = scatter(comm, piece, rows_here(parts, piece), &ParticleRow::id);
+  comm::agree_on(
+      comm, [&] { check_complete(block.rows, piece.begin(comm.rank()), piece.end(comm.rank()), piece.blocks.total); });
+  if (!block.has_contacts) return;
+  block.contact_rows = bring_contacts(comm, piece, parts.contact_rows);
+  block.wall_rows = bring_contacts(comm, piece, parts.wall_rows);
 }
 
 std::vector<disk::h5::Column> plan_columns(const PackBlock& block) {

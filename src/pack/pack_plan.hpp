@@ -4,6 +4,7 @@
 
 #include "comm/comm.hpp"
 #include "disk/hdf5.hpp"
+#include "disk/scatter.hpp"
 #include "pack/pack.hpp"
 #include "report/record.hpp"
 
@@ -18,7 +19,7 @@ struct ParticleRow {
   std::int32_t component;  // 0 where there is one only
 };
 
-/// This rank's block of the file.
+/// This rank's block of the file, and the rows of it that are at hand.
 struct PackBlock {
   bool rotation = true;
   bool mixture = false;  // several components
@@ -33,9 +34,13 @@ struct PackBlock {
   disk::h5::Slab columns{};
 };
 
-/// Collective. Brings every row to the rank that writes it, by id. Throws Error(numerical_failure) on every rank if the
-/// ids are not 0 .. N-1.
+/// Collective. The block, without rows yet but those of maps. Throws Error(numerical_failure) on every rank if an id is
+/// not one of 0 .. N-1.
 [[nodiscard]] PackBlock make_block(const comm::Comm& comm, const PackParts& parts);
+
+/// Collective. Brings the rows of a piece of the blocks to the ranks that write them, by id. Throws
+/// Error(numerical_failure) on every rank if an id is missing or there twice.
+void bring_rows(const comm::Comm& comm, const PackParts& parts, const disk::IdPiece& piece, PackBlock& block);
 
 /// The datasets that all ranks write. `block` must outlive the plan.
 [[nodiscard]] std::vector<disk::h5::Column> plan_columns(const PackBlock& block);

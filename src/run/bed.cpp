@@ -105,15 +105,16 @@ void Bed::balance() {
   neighborhood.rebuild(store);
 }
 
-pack::Histories Bed::histories() const {
-  pack::Histories all{.features = scene.features, .rows = {}};
-  neighborhood.each_history(store, [&](const neighbor::ContactHistory& contact) {
-    const GlobalId holder = contact.holder();
-    pack::HistoryRow row{.holder = holder, .other = contact.second < 0 ? contact.second : contact.first};
-    std::ranges::copy(contact.values, row.values.begin());
-    all.rows.push_back(row);
-  });
-  return all;
+pack::HistoriesHere Bed::histories() const {
+  const auto each = [this](const std::function<void(const pack::HistoryRow&)>& see) {
+    neighborhood.each_history(store, [&](const neighbor::ContactHistory& contact) {
+      const GlobalId holder = contact.holder();
+      pack::HistoryRow row{.holder = holder, .other = contact.second < 0 ? contact.second : contact.first};
+      std::ranges::copy(contact.values, row.values.begin());
+      see(row);
+    });
+  };
+  return {.features = scene.features, .each = each};
 }
 
 void Bed::give(const pack::Histories& histories) {

@@ -61,7 +61,7 @@ struct Bed {
   [[nodiscard]] observe::Bulk bulk() const;  ///< by its surface, frozen or not. Collective
 
   /// What the contacts of this rank's particles remember, frozen or not.
-  [[nodiscard]] pack::Histories histories() const;
+  [[nodiscard]] pack::HistoriesHere histories() const;
   /// Every rank alike. Puts it back: the holders are in the store, and nothing is frozen yet. Then rebuild.
   void give(const pack::Histories& histories);
 

@@ -188,7 +188,8 @@ void write_sample(const comm::Comm& alone, const Sample& sample, const std::stri
   state.progress.now.phase = pack::Phase::settling;
   state.progress.now.row = some_layer();
   const std::array<const particles::Store*, 1> stores{&store};
-  pack::write_checkpoint(alone, path, stores, state, some_histories(sample.dimension, sample.rotation));
+  const pack::Histories contacts = some_histories(sample.dimension, sample.rotation);
+  pack::write_checkpoint(alone, path, stores, state, contacts.here());
 }
 
 class World {

@@ -154,7 +154,8 @@ class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
   Histories histories_ = some_histories(dimension_, rotation_, particle_count);
 
   /// The odd ids from one store, the even ones from another.
-  void write(const comm::Comm& comm, const std::string& path, const particles::Store& store) const {
+  void write(const comm::Comm& comm, const std::string& path, const particles::Store& store,
+             std::int64_t piece = rows_at_a_time) const {
     particles::Store odd(layout_), even(layout_);
     for (LocalIndex i = 0; i < store.owned(); ++i) {
       const GlobalId id = store.ids()[static_cast<std::size_t>(i)];
@@ -165,7 +166,7 @@ class Checkpoint : public ::testing::TestWithParam<std::tuple<int, bool>> {
     for (std::size_t k = 0; k < histories_.rows.size(); ++k) {
       if (static_cast<int>(k) % comm.size() == comm.rank()) mine.rows.push_back(histories_.rows[k]);
     }
-    write_checkpoint(comm, path, stores, state_, mine);
+    write_checkpoint(comm, path, stores, state_, mine.here(), piece);
   }
   [[nodiscard]] std::uint64_t digest(const comm::Comm& comm, const particles::Store& store) const {
     return static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(particles::digest(store))));
@@ -221,6 +222,22 @@ TEST_P(Checkpoint, IsTheSameFileFromAnyNumberOfRanks) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // no second of the clock may be in it
   write(alone_, folder_.file("one.hdf"), testing::scattered(alone_, layout_, grains_, Spread::all));
   EXPECT_TRUE(bytes_of(folder_.file("all.hdf")) == bytes_of(folder_.file("one.hdf")));
+}
+
+TEST_P(Checkpoint, IsTheSameFileInPiecesOfAnySize) {
+  const particles::Store store = testing::scattered(comm_, layout_, grains_, Spread::all);
+  write(comm_, folder_.file("whole.hdf"), store, 100000);
+  for (const std::int64_t piece : {1, 7, 50}) {  // up to sixteen pieces
+    write(comm_, folder_.file("pieces.hdf"), store, piece);
+    particles::Store back(layout_);
+    Histories contacts;
+    expect_same(read_checkpoint(comm_, folder_.file("pieces.hdf"), back, &contacts), state_);
+    expect_histories(back, contacts);
+    if (comm_.rank() == 0) {
+      EXPECT_TRUE(bytes_of(folder_.file("pieces.hdf")) == bytes_of(folder_.file("whole.hdf"))) << piece;
+    }
+    comm_.barrier();
+  }
 }
 
 TEST_P(Checkpoint, BeforeTheFirstLayer) {

@@ -177,6 +177,21 @@ TEST_F(Pack, DatasetsDoNotDependOnTheSpread) {
   }
 }
 
+TEST_F(Pack, IsTheSameFileInPiecesOfAnySize) {
+  const auto layout = particles::layout_of(3, true);
+  const auto parts = testing::make_parts(comm_, layout, testing::some_grains(137, 3), Spread::all);
+  const report::RunRecord record = testing::some_record(3, 3);
+  const auto bytes = [&](std::int64_t piece) {
+    write_pack(comm_, folder_.file("pack.hdf"), parts.view(true), record, piece);
+    std::ifstream file(folder_.file("pack.hdf"), std::ios::binary);
+    std::string all(std::istreambuf_iterator<char>(file), {});
+    comm_.barrier();  // nobody writes it anew before all have read it
+    return all;
+  };
+  const std::string whole = bytes(100000);
+  for (const std::int64_t piece : {1, 7, 50}) EXPECT_TRUE(bytes(piece) == whole) << piece;  // up to sixteen pieces
+}
+
 TEST_F(Pack, ContactsAreSortedByPair) {
   const std::size_t count = 101;
   const auto grains = testing::some_grains(count, 3);

@@ -534,7 +534,7 @@ class Forged : public Restart {
       forged.add(store.ids()[k], store.position(i), radius[k], store.velocity(i), store.spin(i));
     }
     const std::array<const particles::Store*, 1> stores{&forged};
-    pack::write_checkpoint(alone, path, stores, state, contacts);
+    pack::write_checkpoint(alone, path, stores, state, contacts.here());
   }
 };
 INSTANTIATE_TEST_SUITE_P(OneScene, Forged, ::testing::Values(kinds.back()), kind_name);
