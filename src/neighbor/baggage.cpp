@@ -2,11 +2,13 @@
 
 #include <cstring>
 
+#include "base/release.hpp"
+
 namespace packmpi::neighbor {
 
 void Baggage::clear() {
-  head_ = {};
-  items_ = {};
+  release(head_);
+  release(items_);
 }
 
 void Baggage::add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs) {

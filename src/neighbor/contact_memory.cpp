@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "base/release.hpp"
 #include "scene/pair_channels.hpp"
 
 namespace packmpi::neighbor {
@@ -79,7 +80,7 @@ void ContactMemory::lay_down(const particles::Store& store, const PairList& pair
   const auto lay = [&](std::vector<double>& values, std::size_t entries) {
     const std::size_t size = doubles_ * entries;
     if (values.capacity() < size) {
-      values = {};  // or both would be there at once
+      release(values);  // or both would be there at once
       values.reserve(size + size / 64);
     }
     values.resize(size);

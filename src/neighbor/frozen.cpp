@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/release.hpp"
 #include "neighbor/wire.hpp"
 
 namespace packmpi::neighbor {
@@ -47,14 +48,17 @@ void Frozen::take(particles::Store& from, GlobalId below, Baggage* contacts) {
 
 void Frozen::give_back(particles::Store& to, Baggage* contacts) {
   to.set_ghosts(0);
-  if (contacts != nullptr) contacts->fit(to.owned());
+  if (contacts != nullptr) {
+    contacts->fit(to.owned());
+    contacts->reserve(contacts->size() + baggage_.size());
+  }
   for (LocalIndex i = 0; i < store_.owned(); ++i) {
     to.add_record(store_.ids()[static_cast<std::size_t>(i)], store_.record(i));
     if (contacts != nullptr) contacts->append(baggage_, i, [](GlobalId) { return true; });
   }
   baggage_.clear();
   store_ = particles::Store(store_.layout());
-  start_ = {};
+  release(start_);
   in_use_ = false;
 }
 
