@@ -30,12 +30,14 @@ constexpr int turns = 3;        // walls and surface make a bed looser: the frac
 constexpr double margin = 0.5;  // of a layer, by which the last one rises above a height that is found
 constexpr double step_row_bytes = 190.0;  // of NAME.steps.csv, about (doc/estimate.md)
 // Memory of a rank (doc/estimate.md): the program and its libraries; what lists add to a particle; slack of arrays
-// that grow; rows on their way to a file.
+// that grow; what the allocator holds over what is used; a row on its way to a file, three times.
 constexpr double program_bytes = 51e6;
 constexpr double growth = 1.1;
 constexpr std::array<double, 2> pairs_a_particle{2.7, 3.4};  // listed, of discs, of spheres
 constexpr double pair_bytes = 2.0 * sizeof(LocalIndex);
-constexpr double writing_bytes = 400.0;
+constexpr double held = 1.4;
+constexpr std::array<double, 2> contacts_of_one{4.5, 5.2};  // of a disc, of a sphere
+constexpr double row_bytes = 350.0, contact_row_bytes = 250.0;
 
 [[noreturn]] void refuse(const std::string& words) { throw Error(ExitCode::bad_input, "estimate: " + words); }
 
@@ -233,9 +235,18 @@ double list_bytes(const scene::Scene& scene) {
   return pairs * (growth * pair_bytes + sizeof(double) * (stored + touching * (stored + 2)));
 }
 
-// Of a rank with `own` particles.
+// Of a rank with `own` particles: in the end, or while their records move to a larger place.
 double settling_bytes(const scene::Scene& scene, double own, double ghosts) {
-  return program_bytes + own * ((1.0 + ghosts) * own_bytes(scene) + list_bytes(scene));
+  const auto record = static_cast<double>(scene.features.layout().record_bytes());
+  return program_bytes + held * own * ((1.0 + ghosts) * own_bytes(scene) + record + list_bytes(scene));
+}
+
+// What a file takes beside, a piece of it at a time.
+double writing_bytes(const scene::Scene& scene, double own) {
+  const double contacts = contacts_of_one[static_cast<std::size_t>(scene.container.dimension - 2)] / 2.0;
+  const bool written = scene.features.memory || scene.in.output.contacts;
+  const double piece = std::max(static_cast<double>(pack::rows_at_a_time), own / 16.0);
+  return std::min(own, piece) * (row_bytes + (written ? contact_row_bytes * contacts : 0.0));
 }
 
 // A row as a run writes it: its numbers have all their digits.
@@ -261,7 +272,7 @@ report::LayerRow some_row() {
 /// many as of a random loose layer.
 pack::ContactCounts expected_contacts(const scene::Scene& scene, std::int64_t particles) {
   const geometry::Container& container = scene.container;
-  const double touching = container.dimension == 3 ? 5.2 : 4.5;  // of a particle
+  const double touching = contacts_of_one[static_cast<std::size_t>(container.dimension - 2)];
   const double walls = container.mean_area() + container.wall_area(container.height());
   const double r = scene.sizes.mean();
   const double shadow = container.dimension == 3 ? geometry::volume(2, r) : 2.0 * r;
@@ -336,7 +347,7 @@ void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   const double own = static_cast<double>(e.particles.value) / ranks;
   const double settling = settling_bytes(scene, own, e.ghosts);
   e.settling_bytes = std::llround(settling);
-  e.writing_bytes = std::llround(settling + writing_bytes * own);
+  e.writing_bytes = std::llround(settling + writing_bytes(scene, own));
 }
 
 // Of a sample whose density holds under stress.
@@ -387,7 +398,7 @@ std::int64_t memory_a_rank(const scene::Scene& scene, int ranks) {
   report::Estimate e;
   add_counts(scene, scene::expected_fraction(scene), e);
   const double own = static_cast<double>(e.particles.value) / ranks;
-  return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) + writing_bytes * own);
+  return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) + writing_bytes(scene, own));
 }
 
 namespace {
