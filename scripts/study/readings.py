@@ -6,7 +6,8 @@ usage: scripts/study/readings.py [--seeds N] [--only NAME ...] [--examples 5.1 .
 Builds and runs build/tests/bench/readings on input/paper_5_*.toml. A run is one pack of one way to insert; it gives the
 bed after each layer, from which all rules to stop and all volumes V of eq. (22) are read, so that they cost no run of
 their own. Runs that are done are kept in results/readings; delete that folder after a change of the sources. The table
-goes into doc/reproduction.md, between its markers, and every pack into doc/data/readings.csv; --report-only makes the table of the packs there are.
+goes into doc/reproduction.md, between its markers, and every pack into doc/data/readings.csv. Packs that are in that table
+are not made again unless --anew says so; --report-only makes the page's table of the packs there are.
 One seed of all ways to insert takes about a quarter of an hour of one core.
 """
 import argparse
@@ -30,6 +31,10 @@ class Run:
         self.way, self.example, self.rotation, self.seed = way, example, rotation, seed
         self.ends = ends
         self.file = results / way.name / f"{example}_{rotation}_{seed:02d}.csv"
+
+    @property
+    def key(self):
+        return self.way.name, self.example, self.rotation, self.seed
 
     def command(self, program):
         return ["mpirun", "-n", "1", str(program), f"input/paper_{self.example.replace('.', '_')}.toml", str(self.seed),
@@ -65,6 +70,13 @@ def make(runs, program, jobs):
         time.sleep(0.05)
 
 
+def tabled(doc):
+    """Runs whose packs are in doc/data/readings.csv, with their ends."""
+    file = doc / "data" / "readings.csv"
+    rows = report.tables.read(file) if file.exists() else []
+    return {(row["way"], row["example"], row["rotation"], int(row["seed"])) for row in rows if row["stop"] != report.UNFINISHED}
+
+
 def parse():
     parser = argparse.ArgumentParser(description="Try readings of the paper's algorithm on its tables.")
     parser.add_argument("--seeds", type=int, default=2, help="seeds 1 .. N of each column (default 2)")
@@ -76,6 +88,7 @@ def parse():
     parser.add_argument("--program", type=Path, help="an executable that is built already")
     parser.add_argument("--results", type=Path, default=ROOT / "results" / "readings")
     parser.add_argument("--doc", type=Path, default=ROOT / "doc", help="where the table goes")
+    parser.add_argument("--anew", action="store_true", help="make packs that are in the table once more")
     parser.add_argument("--report-only", action="store_true", help="report on the runs there are")
     options = parser.parse_args()
     options.build, options.results = options.build.resolve(), options.results.resolve()
@@ -91,7 +104,8 @@ def main():
         runs = [Run(options.results, way, example, rotation, seed, ",".join(options.ends))
                 for seed in range(1, options.seeds + 1) for way in report.WAYS if way.name in (options.only or way.name)
                 for example in options.examples for rotation in ("on", "off")]
-        make([run for run in runs if not run.file.exists()], options.program, options.jobs)
+        there = set() if options.anew else tabled(options.doc)
+        make([run for run in runs if not run.file.exists() and run.key not in there], options.program, options.jobs)
     kept = [Run(options.results, way, *file.stem.split("_")[:2], int(file.stem.split("_")[2]))
             for way in report.WAYS for file in sorted((options.results / way.name).glob("*.*"))]
     report.write(options.doc, [(run, run.layers()) for run in kept if run.layers()])
