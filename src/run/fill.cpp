@@ -123,9 +123,12 @@ void insert_and_settle(Bed& bed, Attendant& attendant) {
   comm::agree_on(bed.comm, [&] { report::check_energy(bed.scene, at.layers); });
 }
 
-// What a bed sinks by at most in the final stage, over a layer's rise: measured (doc/accuracy.md).
-double sinks_by(const input::Input& in) {
+// What a bed sinks by in the final stage, over a layer's rise: measured (doc/theory.md). What slides creeps, and sinks
+// by that at most; what holds hardly sinks at all, more if it hardens.
+double sinks_by(const scene::Scene& scene) {
   constexpr double rough = 0.3;
+  const input::Input& in = scene.in;
+  if (scene.features.memory) return scene.settling.youngs_modulus < in.particles.youngs_modulus ? 0.2 : 0.08;
   if (in.dynamics.rotation) return 0.45;
   return in.contact.friction > rough ? 1.1 : 0.6;
 }
@@ -136,7 +139,7 @@ double final_height(const scene::Scene& scene, const pack::Progress& at) {
   if (!(scene.relaxation > 0.0) || at.layers.empty() || start::is_taken_over(at.layers.back())) return at.height;
   const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
   if (over) return at.height;
-  return at.height - sinks_by(scene.in) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  return at.height - sinks_by(scene) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
 }
 
 // Collective. Does the bed take another layer?

@@ -365,7 +365,7 @@ TEST(Rest, AndNoLongerThanItsBound) {
 // does so for a fifth of 40 s or until its contacts have damped it.
 TEST(Rest, AHighBedThatSwingsIsStopped) {
   input::Input in = brick();
-  in.container.size = {0.35, 0.35, 3.0};
+  in.container.size = {0.35, 0.35, 3.5};
   in.container.boundary = {input::Boundary::periodic, input::Boundary::periodic};
   in.contact.tangential = input::Tangential::mindlin;
   in.dynamics.time_step = 2e-4;

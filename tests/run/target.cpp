@@ -26,7 +26,7 @@ const std::string scene_text =
     "radius = { distribution = \"equal\", value = 0.01 }\n"
     "[layers]\nthickness = 0.1\nfraction = 0.25\nduration = 0.15\n[jamming]\ngravity = 9.81\n[drag]\ncoefficient = "
     "0.137\n"
-    "[contact]\ntangential = \"mindlin\"\nfriction = 0.5\n[dynamics]\ntime_step = 1e-4\nrelaxation = 0.05\n"
+    "[contact]\ntangential = \"mindlin\"\nfriction = 0.5\n[dynamics]\ntime_step = 1e-4\nrelaxation = 0.15\n"
     "[rest]\nwait = 0\nunbalanced_force = 1e9\nkinetic_energy = 1e9\nsupport = 1e9\n[output]\nlog_every = 0.1\n"
     "[target]\nsolid_fraction = 0.58\ntolerance = 0.03\n";
 

@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 STEPS, MOST, SERVOED = 10000, 0.005, 0.02
-SCENES = {"confined": ["input/confined.toml", "--set", "container.size=[0.08,0.08,0.05]"], "confined_2d": ["tests/scenes/confined_2d.toml", "--set", "rest.wait=0"],
+SCENES = {"confined": ["input/confined.toml", "--set", "container.size=[0.08,0.08,0.06]"], "confined_2d": ["tests/scenes/confined_2d.toml", "--set", "rest.wait=0"],
           "oedometer": ["input/oedometer.toml", "--set", "container.height=0.012", "--set", "container.diameter=0.03"]}
 SHEET = {"confined": 1.0, "confined_2d": 0.01, "oedometer": 1.0}   # m, of a mean particle: in the plane LAMMPS has forces over lengths
 FORCE = re.compile(r"largest (?:contact )?force.*? (\S+) N$", re.MULTILINE)
