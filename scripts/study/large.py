@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Makes the large packs and writes their figures into doc/performance.md: input/million.toml with its preset
-and with the paper's, and input/tall.toml to growing heights.
+and with the paper's, input/cube_million.toml, and input/tall.toml to growing heights.
 
-usage: scripts/study/large.py [--ranks 2] [--scale 1.0] [--only million paper tall] [--picture]
+usage: scripts/study/large.py [--ranks 2] [--scale 1.0] [--only million paper cube tall] [--picture]
 
---scale s: the million's lateral extents times s, to try it (0.32: 1e5 spheres). Results are kept in results/large and not
+--scale s: the lateral extents of the million and of the cube times s, to try it (0.32: 1e5 spheres). Results are kept in results/large and not
 made anew while the program and the settings are the same. --picture draws the million (packmpi render).
 """
 import argparse
@@ -19,6 +19,7 @@ import measuring
 
 PAPER = {"fidelity": "paper", "contact.tangential": "sliding"}
 SIDE, HEIGHT = 10.58, 0.48   # [m] of input/million.toml
+CUBE = 3.84                  # [m] of input/cube_million.toml
 TALL = (0.25, 0.5, 1.0, 2.0)  # [m]
 TALL_RUNS = 5
 
@@ -32,6 +33,9 @@ def cases(options):
         runs.append(("million", "million", size, options.ranks))
     if "paper" in options.only:
         runs.append(("paper", "million", {**size, **PAPER}, options.ranks))
+    if "cube" in options.only:
+        side = CUBE * options.scale
+        runs.append(("cube", "cube_million", {"container.size": f"[{side:g},{side:g},{CUBE}]"}, options.ranks))
     if "tall" in options.only:
         runs += [(f"tall_{height:g}", "tall", {"container.size": f"[0.6,0.6,{height:g}]"}, 1) for height in TALL]
     return runs
@@ -89,7 +93,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--scale", type=float, default=1.0)
-    parser.add_argument("--only", nargs="+", choices=("million", "paper", "tall"), default=("million", "paper", "tall"))
+    parser.add_argument("--only", nargs="+", choices=("million", "paper", "cube", "tall"), default=("million", "paper", "cube", "tall"))
     parser.add_argument("--picture", action="store_true")
     parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
     parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/large")
@@ -104,7 +108,8 @@ def main():
     found = {name: make(options, name, scene, settings, ranks) for name, scene, settings, ranks in cases(options)}
     made = measuring.made_by("scripts/study/large.py" + ("" if options.scale == 1.0 else f" --scale {options.scale:g}"))
     tables = {"million": lambda: million_table("`\"balanced\"`, as in the file", found["million"]),
-              "paper": lambda: million_table("`\"paper\"`", found["paper"]), "tall": lambda: tall_table(found)}
+              "paper": lambda: million_table("`\"paper\"`", found["paper"]),
+              "cube": lambda: million_table("`\"balanced\"`, as in the file", found["cube"]), "tall": lambda: tall_table(found)}
     for name in options.only:   # a block each, of one date and commit
         text = "\n".join([f"{made}.", "", *tables[name]()])
         print(text)
