@@ -1,4 +1,4 @@
-/// Integers by role, and the small vector that every room passes around.
+/// Integers by role, and the small vector that every module passes around.
 #pragma once
 #include <array>
 #include <cmath>

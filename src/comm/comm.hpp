@@ -1,4 +1,4 @@
-/// A communicator and the collectives the other rooms need, on spans and values; no raw MPI elsewhere.
+/// A communicator and the collectives the other modules need, on spans and values; no raw MPI elsewhere.
 /// Every function that says "collective" is called by all ranks in the same order.
 #pragma once
 #include <mpi.h>

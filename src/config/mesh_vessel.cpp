@@ -73,8 +73,9 @@ std::vector<mesh::Corners> read_vessel(const document::Document& document, const
 /// How the surface was read, for the log.
 std::string reading_of(const mesh::Surface& surface, const std::string& name, const mesh::Mended& mended) {
   const mesh::Shell& shell = surface.shell();
-  return fmt::format("{}: {} triangles{}, a room of {:.6g} m3 in {:g} x {:g} x {:g} m", name, shell.triangles.size(),
-                     mesh::mended_words(mended), surface.volume(), shell.high[0], shell.high[1], shell.high[2]);
+  return fmt::format("{}: {} triangles{}, an interior of {:.6g} m3 in {:g} x {:g} x {:g} m", name,
+                     shell.triangles.size(), mesh::mended_words(mended), surface.volume(), shell.high[0], shell.high[1],
+                     shell.high[2]);
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ void take_mesh(const document::Document& document, const std::vector<tables::Cur
   }
   if (!c.file.empty()) in.remarks.push_back(reading_of(*c.mesh, name, c.mesh->shell().mended));
   if (!in.obstacles.empty()) {
-    c.mesh = room_around(in, *c.mesh, drawn_obstacles(in, files, shift));
+    c.mesh = interior_around(in, *c.mesh, drawn_obstacles(in, files, shift));
     in.remarks.push_back(reading_of(*c.mesh, fmt::format("the container less {} obstacles", in.obstacles.size()), {}));
     in.obstacles.clear();
   }

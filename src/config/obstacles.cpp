@@ -109,10 +109,10 @@ double volume_of(const Obstacle& one, std::size_t number, const Triangles& body,
     document::fail(one.place, "obstacle", fmt::format("obstacle {} {}", number, words));
   };
   const auto [low, high] = mesh::box_around(body);
-  const Vec3 widths = mesh::minus(high, low), room = mesh::minus(vessel.high(), vessel.low());
+  const Vec3 widths = mesh::minus(high, low), extent = mesh::minus(vessel.high(), vessel.low());
   const bool round = one.shape == Body::sphere || one.shape == Body::cylinder;
   const double width = *std::ranges::min_element(widths),
-               least = *std::ranges::max_element(room) * (round ? 1e-3 : 1e-5);
+               least = *std::ranges::max_element(extent) * (round ? 1e-3 : 1e-5);
   if (width < least)
     refuse(fmt::format("is {:.3g} m wide; less than {:.3g} m is too little in this vessel", width, least));
   if (const Vec3& x = body.front()[0]; vessel.beyond(x) > 0.0) {
@@ -178,8 +178,8 @@ std::vector<Triangles> drawn_obstacles(const Input& in, const std::vector<tables
   return bodies;
 }
 
-std::shared_ptr<const mesh::Surface> room_around(const Input& in, const mesh::Surface& vessel,
-                                                 const std::vector<Triangles>& obstacles) {
+std::shared_ptr<const mesh::Surface> interior_around(const Input& in, const mesh::Surface& vessel,
+                                                     const std::vector<Triangles>& obstacles) {
   const Triangles before = triangles_of(vessel.shell());
   refuse_many(in, before.size(), obstacles);
   Triangles all = before;
@@ -189,9 +189,9 @@ std::shared_ptr<const mesh::Surface> room_around(const Input& in, const mesh::Su
     add(all, obstacles[k]);
   }
   try {
-    auto room = std::make_shared<const mesh::Surface>(all, "mesh");
-    if (std::abs(room->volume() - volume) > 1e-9 * vessel.volume()) refuse_what_is_inside(in, obstacles);
-    return room;
+    auto interior = std::make_shared<const mesh::Surface>(all, "mesh");
+    if (std::abs(interior->volume() - volume) > 1e-9 * vessel.volume()) refuse_what_is_inside(in, obstacles);
+    return interior;
   } catch (const Error&) {
     refuse_what_meets(in, before, obstacles);
     throw;

@@ -19,9 +19,9 @@ namespace packmpi::input {
                                                                       const std::vector<tables::CurveFile>& files,
                                                                       const Vec3& shift);
 
-/// The room that they leave of a vessel. Throws Error(bad_input) of the first obstacle that does not lie inside it,
+/// The interior that they leave of a vessel. Throws Error(bad_input) of the first obstacle that does not lie inside it,
 /// clear of its walls and of the others. Cost: O(triangles).
-[[nodiscard]] std::shared_ptr<const mesh::Surface> room_around(
+[[nodiscard]] std::shared_ptr<const mesh::Surface> interior_around(
     const Input& in, const mesh::Surface& vessel, const std::vector<std::vector<mesh::Corners>>& obstacles);
 
 }  // namespace packmpi::input

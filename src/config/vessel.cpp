@@ -119,7 +119,7 @@ geometry::Container container_of(const Container& container) {
     case VesselShape::prism:  // once it has been read it is a mesh
     case VesselShape::mesh:
       box.shape = geometry::Shape::mesh;
-      box.room = container.mesh.get();
+      box.interior = container.mesh.get();
       break;
   }
   return box;

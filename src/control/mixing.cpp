@@ -53,7 +53,7 @@ Mixing begin_mixing(const scene::Scene& scene) {
 
 bool by_mass(const scene::Scene& scene) { return !scene.in.strata.empty() && scene.in.strata.front().mass.has_value(); }
 
-double room_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing) {
+double left_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const std::vector<input::Stratum>& strata = scene.in.strata;
   for (;;) {
@@ -71,7 +71,7 @@ double room_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixin
 bool wants_mass(const scene::Scene& scene, const Mixing& mixing) {
   if (!by_mass(scene)) return false;
   Mixing next = mixing;
-  return room_in_stratum(scene, 0.0, next) > 0.0;
+  return left_in_stratum(scene, 0.0, next) > 0.0;
 }
 
 std::vector<double> masses_wanted(const scene::Scene& scene, const Mixing& mixing) {

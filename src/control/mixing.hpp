@@ -30,7 +30,7 @@ struct Mixing {
 /// one is complete, ends where it is to; infinite where the end of the bed ends it. `fraction`: what the bed's solid
 /// fraction is; 0: as expected. Heights of strata become solid volumes by it, as the surface of a bed that still moves
 /// says nothing of the finished pack. Pure.
-[[nodiscard]] double room_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing);
+[[nodiscard]] double left_in_stratum(const scene::Scene& scene, double fraction, Mixing& mixing);
 
 /// Whether strata end with masses, and the last one has not got its own yet. Pure.
 [[nodiscard]] bool wants_mass(const scene::Scene& scene, const Mixing& mixing);

@@ -1,5 +1,5 @@
 /// Files that appear whole or not at all, with the system's own words when they cannot. Rank-local; private to this
-/// room.
+/// module.
 #pragma once
 #include <cstddef>
 #include <cstdint>

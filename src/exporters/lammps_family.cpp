@@ -92,7 +92,7 @@ std::string boundary_words(const Specimen& s) {
 
 namespace {
 
-/// The sides of a polygon but floor and lid; a plane's normal looks into the room.
+/// The sides of a polygon but floor and lid; a plane's normal looks into the interior.
 std::vector<Region> side_regions(const geometry::Container& vessel) {
   std::vector<Region> regions;
   vessel.near_walls({}, HUGE_VAL, [&](geometry::Surface wall, double) {

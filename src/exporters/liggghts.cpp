@@ -138,7 +138,7 @@ Document make(const Specimen& s) {
        }});
   document.sections.push_back(velocities(s));
   document.companion = in_file(s);
-  if (s.scene.container.is_mesh()) document.third = mesh::text_stl(s.scene.container.room->shell());
+  if (s.scene.container.is_mesh()) document.third = mesh::text_stl(s.scene.container.interior->shell());
   return document;
 }
 

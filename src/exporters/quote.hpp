@@ -1,6 +1,6 @@
 /// Words from a pack or of a user, as the languages that are written here take them: a pack may be a stranger's, and
 /// none of its words may become a command. One function a language; what a language cannot say is refused. Private to
-/// this room. All of it is local; errors: Error(bad_input), one line.
+/// this module. All of it is local; errors: Error(bad_input), one line.
 #pragma once
 #include <string>
 #include <string_view>

@@ -81,8 +81,9 @@ std::string vessel_words(const Specimen& s) {
     case geometry::Shape::annulus:
       return fmt::format("annulus: walls of radius {0} and {1} around x = y = {0}", s.radius(), vessel.core);
     case geometry::Shape::mesh:
-      return fmt::format("mesh: the room of {:.9g} m3 inside {} triangles, from z = 0 to {}", vessel.room->volume(),
-                         vessel.room->shell().triangles.size(), vessel.room->high()[2]);
+      return fmt::format("mesh: the interior of {:.9g} m3 inside {} triangles, from z = 0 to {}",
+                         vessel.interior->volume(), vessel.interior->shell().triangles.size(),
+                         vessel.interior->high()[2]);
     case geometry::Shape::polygon:
       return fmt::format("polygon: walls on {} sloping sides between x = 0 and {}", vessel.polygon->sloping().size(),
                          vessel.polygon->width());
@@ -228,7 +229,7 @@ std::array<Extent, 3> inner_box(const Specimen& s) {
   std::array<Extent, 3> box{};
   for (std::size_t axis = 0; axis < s.vertical(); ++axis) box[axis] = {0.0, s.size[axis]};
   box[s.vertical()] = {0.0, s.scene.container.lid.value_or(std::max(s.size[s.vertical()], s.top))};
-  if (s.scene.container.is_mesh()) box[2].high = std::max(box[2].high, s.scene.container.room->high()[2]);
+  if (s.scene.container.is_mesh()) box[2].high = std::max(box[2].high, s.scene.container.interior->high()[2]);
   return box;
 }
 

@@ -75,7 +75,7 @@ std::string walls(const Specimen& s) {
                         plane.at > 0.0 ? -1 : 1);
   }
   if (s.scene.container.is_polygon()) text += "walls += " + facets_words(facets(s));
-  if (s.scene.container.is_mesh()) text += "walls += " + facets_words(facets(*s.scene.container.room));
+  if (s.scene.container.is_mesh()) text += "walls += " + facets_words(facets(*s.scene.container.interior));
   return text;
 }
 
@@ -83,8 +83,8 @@ std::string walls(const Specimen& s) {
 std::size_t faces(const geometry::Container& vessel) {
   if (vessel.is_polygon()) return vessel.polygon->sloping().size();
   if (!vessel.is_mesh()) return 0;
-  const auto all = static_cast<std::size_t>(vessel.room->features().edge_begin());
-  return facets(*vessel.room).size() == all ? all : 0;
+  const auto all = static_cast<std::size_t>(vessel.interior->features().edge_begin());
+  return facets(*vessel.interior).size() == all ? all : 0;
 }
 
 /// Walls of the pack among the bodies of the script.

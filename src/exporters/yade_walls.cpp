@@ -1,6 +1,6 @@
 // YADE has flat walls and facets. Over a seam of two facets a sphere is touched twice, so that a pack that was at rest
 // is not. So round walls are a formula in the script (geometry::RoundWall) with the scene's law (doc/theory.md), and
-// the faces of a convex room are a facet each.
+// the faces of a convex interior are a facet each.
 #include "exporters/yade_walls.hpp"
 
 #include <fmt/core.h>

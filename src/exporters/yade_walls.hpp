@@ -13,8 +13,8 @@ namespace packmpi::exporters::yade {
 /// the engine that moves. Of a vessel that has such walls.
 [[nodiscard]] std::string round_walls(const Specimen& specimen);
 
-/// What stands for a mesh: of a convex room a triangle over each face, in the order of their numbers; of others each
-/// triangle. Over a seam of two of them a sphere is touched twice. Cost: O(triangles * faces).
+/// What stands for a mesh: of a convex interior a triangle over each face, in the order of their numbers; of others
+/// each triangle. Over a seam of two of them a sphere is touched twice. Cost: O(triangles * faces).
 [[nodiscard]] std::vector<mesh::Corners> facets(const mesh::Surface& surface);
 /// Of a polygon a triangle over each sloping side, in their order, with no edge where a particle can be.
 [[nodiscard]] std::vector<mesh::Corners> facets(const Specimen& specimen);

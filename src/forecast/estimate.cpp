@@ -67,7 +67,7 @@ Fitted fit_height(const scene::Scene& scene, double particles, double layers, do
 }
 
 // H_d below which so many particles fit, between the shape's own walls. A frustum keeps its diameters.
-double fit_room(const scene::Scene& scene, double particles, double fraction) {
+double fit_extent(const scene::Scene& scene, double particles, double fraction) {
   const geometry::Container& vessel = scene.container;
   const bool clipped = scene.in.layers.region == input::RegionRule::container;
   const double target = vessel.height();
@@ -76,7 +76,7 @@ double fit_room(const scene::Scene& scene, double particles, double fraction) {
   const bool flat = scene.in.container.shape == input::VesselShape::polygon;
   const bool fixed = vessel.is_mesh() || vessel.shape == geometry::Shape::sphere || flat;
   if (!fixed) return particles * mean_volume(scene) / (vessel.mean_area(0.0, below) * fraction) + left;
-  const double top = flat ? vessel.polygon->top() : vessel.is_mesh() ? vessel.room->high()[2] : vessel.size[0];
+  const double top = flat ? vessel.polygon->top() : vessel.is_mesh() ? vessel.interior->high()[2] : vessel.size[0];
   const double height = vessel.level(particles * mean_volume(scene) / fraction) + left;
   if (height <= top) return height;
   refuse(fmt::format("{} particles do not fit into this vessel, which takes about {:.0f}", particles,
@@ -179,7 +179,7 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
   }
   if (scene.in.layers.region == input::RegionRule::container || !scene.container.straight()) {
     for (int turn = 0; turn < turns; ++turn) {
-      size.back() = fit_room(scene, particles, fraction_of(scene, question).value);
+      size.back() = fit_extent(scene, particles, fraction_of(scene, question).value);
       scene = changed(source, {size_key(scene, size)});
     }
     return scene;

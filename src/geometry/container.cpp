@@ -180,13 +180,13 @@ Facing Container::facing_part(std::size_t part, const Vec3& x) const {
     const Side& side = polygon->sloping()[part];
     return {side.distance(x), side.normal};
   }
-  const mesh::Touch touch = room->touch_of(static_cast<std::int32_t>(part), x, behind);
+  const mesh::Touch touch = interior->touch_of(static_cast<std::int32_t>(part), x, behind);
   return {touch.distance, {touch.normal[0], touch.normal[1], touch.normal[2]}};
 }
 
-double Container::room_between(double margin, double low, double high) const {
+double Container::volume_within(double margin, double low, double high) const {
   if (!(low < high)) return 0.0;
-  if (is_mesh()) return room->room_between(margin, low, high);
+  if (is_mesh()) return interior->volume_within(margin, low, high);
   if (is_polygon()) return area_of(polygon->within(margin, low, high));
   if (shape == Shape::frustum) return room_in_frustum(*this, margin, low, high);
   if (shape == Shape::sphere) return room_in_sphere(*this, margin, low, high);
@@ -195,7 +195,7 @@ double Container::room_between(double margin, double low, double high) const {
 }
 
 double Container::area_at(double height) const {
-  if (is_mesh()) return room->area_at(height);
+  if (is_mesh()) return interior->area_at(height);
   if (is_polygon()) return polygon->width_at(height);
   if (straight()) return section();
   const double outer = ring(height, 0.0).outer;
@@ -207,7 +207,7 @@ double Container::level(double volume) const {
   double top = height();
   const double below = volume_between(0.0, top);
   if (shape == Shape::sphere) top = size[0];
-  if (is_mesh()) top = room->high()[2];
+  if (is_mesh()) top = interior->high()[2];
   if (is_polygon() && closes()) top = polygon->top();
   if (shape == Shape::frustum && closes()) top = Cone(*this).height(0.0, 0.0);
   if (volume >= volume_between(0.0, top)) return closes() ? top : top + (volume - below) / area_at(top);
@@ -215,7 +215,7 @@ double Container::level(double volume) const {
 }
 
 double Container::wall_area(double up_to) const {
-  if (is_mesh()) return room->walls_below(up_to);
+  if (is_mesh()) return interior->walls_below(up_to);
   if (is_polygon()) return polygon->sides_below(up_to);
   if (shape == Shape::sphere && dimension == 2) {
     return 4.0 * radius() * elementary::arcsine(std::sqrt(std::clamp(up_to / size[0], 0.0, 1.0)));
@@ -236,7 +236,7 @@ double Container::wall_area(double up_to) const {
   return area;
 }
 
-double Container::walls_over_room() const {
+double Container::walls_over_volume() const {
   if (!straight()) return wall_area(height()) / volume_between(0.0, height());
   if (!is_box()) return wall_area(1.0) / section();
   double sum = 0.0;
@@ -249,7 +249,7 @@ double Container::walls_over_room() const {
 Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness) const {
   const auto up = static_cast<std::size_t>(vertical());
   const double bottom = low + radius, height = thickness - 2.0 * radius;
-  if (is_mesh()) return room->draw(u, radius, bottom, bottom + height);
+  if (is_mesh()) return interior->draw(u, radius, bottom, bottom + height);
   if (is_polygon()) return polygon->draw(u, radius, bottom, bottom + height);
   Vec3 place{};
   place[up] = bottom + u[up] * height;
@@ -261,9 +261,9 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
     return place;
   }
   if (!straight()) {
-    const double volume = room_between(radius, bottom, bottom + height);
+    const double volume = volume_within(radius, bottom, bottom + height);
     place[up] = volume > 0.0 ? place_of(u[up] * volume, bottom, bottom + height,
-                                        [&](double z) { return room_between(radius, bottom, z); })
+                                        [&](double z) { return volume_within(radius, bottom, z); })
                              : bottom + (closes() ? 0.0 : height);
   }
   place[0] = 0.5 * size[0];
@@ -278,8 +278,8 @@ Vec3 Container::draw(const Vec3& u, double radius, double low, double thickness)
 
 double Container::slab(std::size_t axis, double from, double to, double low, double high) const {
   if (is_mesh()) {
-    return (room->volume_below(high, axis, to) - room->volume_below(high, axis, from)) -
-           (room->volume_below(low, axis, to) - room->volume_below(low, axis, from));
+    return (interior->volume_below(high, axis, to) - interior->volume_below(high, axis, from)) -
+           (interior->volume_below(low, axis, to) - interior->volume_below(low, axis, from));
   }
   if (is_polygon()) return area_of(polygon->within(0.0, low, high, std::max(from, 0.0), std::min(to, size[0])));
   const double middle = 0.5 * size[axis];
@@ -315,7 +315,7 @@ double Container::slab(std::size_t axis, double from, double to, double low, dou
 
 void Container::touching_planes(const Vec3& x, double range, const Found& found) const {
   if (is_mesh()) {
-    room->touches(x, range, behind, [&](std::int32_t, const mesh::Touch& touch) {
+    interior->touches(x, range, behind, [&](std::int32_t, const mesh::Touch& touch) {
       found({touch.normal[0], touch.normal[1], touch.normal[2]}, touch.distance);
     });
     return;

@@ -109,11 +109,11 @@ struct Container {
   std::optional<double> lid = std::nullopt;  ///< [m] height of a rigid lid; none: open at the top
   Vec3 speed{-0.0, -0.0, -0.0};  ///< [m/s] of walls that move: the high one of each lateral axis, and the lid
   Shape shape = Shape::box;
-  std::array<double, 2> ends{};         ///< [m] radii of a frustum at the floor and at H_d
-  double core = 0.0;                    ///< [m] radius of the inner wall of an annulus
-  const mesh::Surface* room = nullptr;  ///< of a mesh; its owner is asked::Container
-  double behind = 0.0;                  ///< [m] of a mesh: half the smallest radius, see mesh::Table
-  const Polygon* polygon = nullptr;     ///< of a polygon; its owner is asked::Container
+  std::array<double, 2> ends{};             ///< [m] radii of a frustum at the floor and at H_d
+  double core = 0.0;                        ///< [m] radius of the inner wall of an annulus
+  const mesh::Surface* interior = nullptr;  ///< of a mesh; its owner is asked::Container
+  double behind = 0.0;                      ///< [m] of a mesh: half the smallest radius, see mesh::Table
+  const Polygon* polygon = nullptr;         ///< of a polygon; its owner is asked::Container
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }
   [[nodiscard]] constexpr int vertical() const { return dimension - 1; }
@@ -146,20 +146,20 @@ struct Container {
   [[nodiscard]] double mean_area() const { return mean_area(0.0, height()); }
   /// Of the container's inside between two heights [m]: [m3]; 2D: [m2]. Exact.
   [[nodiscard]] double volume_between(double low, double high) const {
-    return straight() ? section() * (high - low) : room_between(0.0, low, high);
+    return straight() ? section() * (high - low) : volume_within(0.0, low, high);
   }
   /// The height [m] below which the inside has this volume [m3]; of one that closes its top at most.
   [[nodiscard]] double level(double volume) const;
   /// Of the side walls up to a height [m]: [m2]; 2D: [m].
   [[nodiscard]] double wall_area(double up_to) const;
-  /// Side walls over the room below H_d [1/m].
-  [[nodiscard]] double walls_over_room() const;
+  /// Side walls over the interior below H_d [1/m].
+  [[nodiscard]] double walls_over_volume() const;
 
   /// Has this container this wall? Periodic axes have none.
   [[nodiscard]] constexpr bool has(Surface surface) const {
     const auto number = static_cast<std::size_t>(surface);
     if (surface == Surface::lid) return lid.has_value();
-    if (is_mesh()) return room != nullptr && number >= most_surfaces;
+    if (is_mesh()) return interior != nullptr && number >= most_surfaces;
     if (is_polygon()) {
       return polygon->has_plane(number) ||
              (number >= most_surfaces && number - most_surfaces < polygon->sloping().size());
@@ -210,7 +210,9 @@ struct Container {
   }
   /// How far `x` is behind a wall or the end of a periodic axis [m]; negative: inside. NaN if a coordinate is.
   [[nodiscard]] double beyond(const Vec3& x) const {
-    double most = is_mesh() ? room->beyond(x) : has(Surface::floor) ? -plane(Surface::floor).distance(x) : -HUGE_VAL;
+    double most = is_mesh()             ? interior->beyond(x)
+                  : has(Surface::floor) ? -plane(Surface::floor).distance(x)
+                                        : -HUGE_VAL;
     const auto take = [&](double here) {
       if (here > most || here != here) most = here;
     };
@@ -235,14 +237,14 @@ struct Container {
   }
   /// Is the point inside the side walls of a round vessel and at least `margin` [m] away from them? In a box: yes.
   [[nodiscard]] bool holds(const Vec3& x, double margin) const {
-    if (is_mesh()) return margin > 0.0 ? room->fits(x, margin) : room->beyond(x) <= 0.0;
+    if (is_mesh()) return margin > 0.0 ? interior->fits(x, margin) : interior->beyond(x) <= 0.0;
     return is_box() || from_sides(x) >= margin;
   }
 
   /// Where at a height [m] the points of a round vessel are that its side walls are `margin` [m] away from at least.
   [[nodiscard]] Ring ring(double height, double margin) const;
   /// Volume of such points between two heights [m]: [m3]; 2D: [m2]. Exact.
-  [[nodiscard]] double room_between(double margin, double low, double high) const;
+  [[nodiscard]] double volume_within(double margin, double low, double high) const;
   /// The place of a centre for uniform numbers `u` in [0, 1): evenly over where a particle of `radius` [m] fits between
   /// the side walls and within `thickness` [m] above the height `low` [m]. Of a mesh or a polygon its z is NaN if
   /// none was found.

@@ -146,12 +146,12 @@ Corners Polygon::within(double margin, double low, double high, double from, dou
 }
 
 Vec3 Polygon::draw(const Vec3& u, double margin, double low, double high) const {
-  const Corners room = within(margin, low, high);
-  double left = u[0] * area_of(room);
-  for (std::size_t k = 2; k < room.size(); ++k) {  // triangles around its first corner
-    const auto &o = room[0], &a = room[k - 1], &b = room[k];
+  const Corners interior = within(margin, low, high);
+  double left = u[0] * area_of(interior);
+  for (std::size_t k = 2; k < interior.size(); ++k) {  // triangles around its first corner
+    const auto &o = interior[0], &a = interior[k - 1], &b = interior[k];
     const double here = area_of({o, a, b});
-    if (left >= here && k + 1 < room.size()) {
+    if (left >= here && k + 1 < interior.size()) {
       left -= here;
       continue;
     }

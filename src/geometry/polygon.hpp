@@ -8,7 +8,7 @@
 
 namespace packmpi::geometry {
 
-/// A straight side, of which a point x is offset - normal x away [m]; the unit vector points out of the room.
+/// A straight side, of which a point x is offset - normal x away [m]; the unit vector points out of the interior.
 struct Side {
   Vec3 normal{};
   double offset = 0.0;  ///< [m]
@@ -26,7 +26,7 @@ using Corners = std::vector<std::array<double, 2>>;
 /// [m2] of a disc of radius `r` at `x` what lies in the polygon. In closed form.
 [[nodiscard]] double area_in_polygon(double r, const Vec3& x, const Corners& corners) noexcept;
 
-/// A room on the inner side of each of some sides, between x = 0 and x = width. A horizontal side at y = 0 is its
+/// An interior on the inner side of each of some sides, between x = 0 and x = width. A horizontal side at y = 0 is its
 /// floor.
 class Polygon {
  public:
@@ -55,7 +55,7 @@ class Polygon {
   [[nodiscard]] Corners within(double margin, double low, double high) const {
     return within(margin, low, high, 0.0, width_);
   }
-  /// The place in such a room of two uniform numbers in [0, 1): evenly over it. z is NaN if there is none.
+  /// The place in such an interior of two uniform numbers in [0, 1): evenly over it. z is NaN if there is none.
   [[nodiscard]] Vec3 draw(const Vec3& u, double margin, double low, double high) const;
 
  private:

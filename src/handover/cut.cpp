@@ -120,14 +120,14 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
   for (std::size_t a = 0; a < 3; ++a) low_[a] = middle_[a] - 0.5 * size_[a];
   if (shape_ == Shape::surface) check_corners(words);
   const double slack = 1e-12 * *std::ranges::max_element(source_.size);
-  Vec3 room = source_.size;
-  if (source_.lid) room[static_cast<std::size_t>(source_.vertical())] = *source_.lid;
+  Vec3 extent = source_.size;
+  if (source_.lid) extent[static_cast<std::size_t>(source_.vertical())] = *source_.lid;
   for (std::size_t a = 0; a < static_cast<std::size_t>(source_.dimension); ++a) {
-    if (low_[a] >= -slack && low_[a] + size_[a] <= room[a] + slack) continue;
+    if (low_[a] >= -slack && low_[a] + size_[a] <= extent[a] + slack) continue;
     refuse_cut(words,
                fmt::format("it reaches from {:g} to {:g} m along {}, and the container from 0 to {:g} m; make it "
                            "smaller or move it",
-                           low_[a], low_[a] + size_[a], "xyz"[a], room[a]));
+                           low_[a], low_[a] + size_[a], "xyz"[a], extent[a]));
   }
   if (source_.is_mesh()) {
     check_in_mesh(words, slack);
@@ -140,9 +140,9 @@ Cut::Cut(const std::string& words, const scene::Scene& scene, const std::string&
 void Cut::check_round(const std::string& words, double slack) const {
   if (source_.dimension == 2) return check_rectangle(words, slack);
   if (shape_ == Shape::sphere) {
-    const double room = source_.from_sides(middle_);
-    if (room + slack >= 0.5 * size_[0]) return;
-    refuse_cut(words, fmt::format("its middle is {:g} m from the vessel's wall; make it smaller or move it", room));
+    const double away = source_.from_sides(middle_);
+    if (away + slack >= 0.5 * size_[0]) return;
+    refuse_cut(words, fmt::format("its middle is {:g} m from the vessel's wall; make it smaller or move it", away));
   }
   const double low = low_[2], high = low_[2] + size_[2];
   const double x = std::abs(middle_[0] - source_.radius()), y = std::abs(middle_[1] - source_.radius());
@@ -196,7 +196,7 @@ void Cut::check_corners(const std::string& words) const {
 void Cut::check_in_mesh(const std::string& words, double slack) const {
   Vec3 low = low_, high = low_;
   for (std::size_t a = 0; a < 3; ++a) low[a] += slack, high[a] += size_[a] - slack;
-  if (!source_.room->meets_box(low, high) && source_.holds(middle_, 0.0)) return;
+  if (!source_.interior->meets_box(low, high) && source_.holds(middle_, 0.0)) return;
   refuse_cut(words, "the box around it does not lie inside the mesh that the pack is in; make it smaller or move it");
 }
 
@@ -319,7 +319,7 @@ std::string Cut::words() const {
     return fmt::format("a cylinder of diameter {:g} m and height {:g} m", size_[0], size_[2]);
   if (shape_ == Shape::sphere) return fmt::format("a sphere of diameter {:g} m", size_[0]);
   if (shape_ == Shape::surface) {
-    return fmt::format("the room of {:g} m3 inside the {} triangles of {}{}", surface_->volume(),
+    return fmt::format("the interior of {:g} m3 inside the {} triangles of {}{}", surface_->volume(),
                        surface_->shell().triangles.size(), text::printable(file_),
                        mesh::mended_words(surface_->shell().mended));
   }

@@ -149,7 +149,7 @@ void check_counts(const Case& scene) {
   const double count = std::min(scene.particles_in(scene.height(), settled, typical),
                                 most * scene.particles_in(layers.thickness, layers.fraction, typical));
   if (!(count <= most_particles)) {
-    scene.refuse(scene.room_key(),
+    scene.refuse(scene.extent_key(),
                  fmt::format("about {:.2g} particles, more than 2^40; make the container smaller or the "
                              "particles larger",
                              count));
@@ -170,7 +170,7 @@ void check_resolution(const Case& scene) {
                                   "overlaps; make it smaller or the particles larger",
                                   length, length / scene.smallest(), widest));
   };
-  for (const double length : scene.in.container.size) check(scene.room_key(), length);
+  for (const double length : scene.in.container.size) check(scene.extent_key(), length);
   check("layers.thickness", scene.in.layers.thickness);
 }
 

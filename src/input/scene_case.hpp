@@ -60,9 +60,9 @@ struct Case {
   /// The key of an extent of the container.
   [[nodiscard]] std::string extent_key(std::size_t axis) const {
     if (boxed()) return fmt::format("container.size[{}]", axis);
-    return axis + 1 == in.container.size.size() ? "container.height" : room_key();
+    return axis + 1 == in.container.size.size() ? "container.height" : extent_key();
   }
-  [[nodiscard]] const char* room_key() const {
+  [[nodiscard]] const char* extent_key() const {
     if (is(VesselShape::polygon)) return "container.polygon";
     if (is(VesselShape::trapezium))
       return in.container.bottom_width < in.container.top_width ? "container.top_width" : "container.bottom_width";

@@ -34,7 +34,7 @@ void check_mesh(const Case& scene) {
                  fmt::format("{:g} m is above the top of the mesh, {:g} m; lower it", c.height, top));
   }
   if (c.mesh->volume() < 4.0 / 3.0 * std::numbers::pi * r * r * r) {
-    scene.refuse(scene.room_key(),
+    scene.refuse(scene.extent_key(),
                  fmt::format("the mesh has a volume of {:.3g} m3, less than the largest particle, {:g} m "
                              "across; is its unit right?",
                              c.mesh->volume(), 2.0 * r));

@@ -7,7 +7,7 @@ namespace packmpi::mesh {
 
 /// A surface as contacts read it. Faces are numbered first, then edges, then corners. Directions have length 1.
 struct Table {
-  const double* faces = nullptr;            ///< 4 each: normal out of the room, offset
+  const double* faces = nullptr;            ///< 4 each: normal out of the interior, offset
   const double* triangles = nullptr;        ///< 12 each: of three sides the direction into it, in its plane, and offset
   const double* edges = nullptr;            ///< 16 each: a point, direction, from, to; into both faces, with offsets
   const double* corners = nullptr;          ///< 3 each
@@ -15,7 +15,7 @@ struct Table {
   const std::int32_t* spokes_of = nullptr;  ///< of each corner the first, and the end of the last
   const std::int32_t* patch = nullptr;      ///< of each feature: those that are smooth together have one, see Features
   std::int32_t edge_begin = 0, corner_begin = 0;  ///< numbers of the first edge and the first corner
-  double behind = 0.0;                            ///< [m] what is so far behind a face belongs to another room
+  double behind = 0.0;                            ///< [m] what is so far behind a face belongs to another interior
 };
 
 /// Towards a wall, and how far it is.
@@ -61,7 +61,7 @@ PACKMPI_CONTACT Touch touch_place(const double* place, const double* x, bool on)
   return {{d[0] * inverse, d[1] * inverse, d[2] * inverse}, on ? distance : far_away};
 }
 
-/// An edge that sticks out into the room, in the wedge that neither of its faces has.
+/// An edge that sticks out into the interior, in the wedge that neither of its faces has.
 PACKMPI_CONTACT Touch touch_edge(const Table& table, std::int32_t edge, const double* x) {
   const double* e = table.edges + 16 * std::int64_t{edge};
   const double u = along(e + 3, x);

@@ -12,13 +12,13 @@ namespace {
 
 /// A face of a mesh.
 struct Face {
-  Vec3 normal;  // out of the room
+  Vec3 normal;  // out of the interior
   double offset;
   std::vector<Vec3> points;  // of its triangles
   Vec3 longest{};            // of their edges
 };
 
-/// By their numbers. None if the room is not convex: an edge sticks out, or a corner is beyond a face.
+/// By their numbers. None if the interior is not convex: an edge sticks out, or a corner is beyond a face.
 std::vector<Face> faces_of_convex(const Surface& surface) {
   const Shell& shell = surface.shell();
   if (surface.features().count() != surface.features().edge_begin()) return {};
@@ -45,8 +45,8 @@ std::vector<Face> faces_of_convex(const Surface& surface) {
   return faces;
 }
 
-/// A right triangle over the rectangle around a face. Beyond the face it is outside of a convex room, and a sphere in
-/// the room has its nearest place of the plane in the face, or does not touch it.
+/// A right triangle over the rectangle around a face. Beyond the face it is outside of a convex interior, and a sphere
+/// in the interior has its nearest place of the plane in the face, or does not touch it.
 Corners triangle_over(const Face& face) {
   const Vec3 u = unit(face.longest), v = cross(face.normal, u);
   std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};

@@ -1,4 +1,4 @@
-/// What stands for the walls of a convex room: one triangle a face.
+/// What stands for the walls of a convex interior: one triangle a face.
 #pragma once
 #include <vector>
 
@@ -6,8 +6,8 @@
 
 namespace packmpi::mesh {
 
-/// A triangle over each face, in the order of their numbers: it has no edge inside the room. Empty if the room is not
-/// convex. Cost: O(triangles * faces).
+/// A triangle over each face, in the order of their numbers: it has no edge inside the interior. Empty if the interior
+/// is not convex. Cost: O(triangles * faces).
 [[nodiscard]] std::vector<Corners> triangles_over_faces(const Surface& surface);
 
 }  // namespace packmpi::mesh

@@ -181,7 +181,7 @@ void Features::find_edges(const Shell& shell) {
       const double* mine = side(t, k);
       const double* its = side(other, across);
       const double* plane = faces_.data() + 4 * static_cast<std::size_t>(face_of_[t]);
-      if (!(along(its, plane) > 1e-9)) continue;  // an inner corner of the room
+      if (!(along(its, plane) > 1e-9)) continue;  // an inner corner of the interior
       const Vec3 &from = shell.points[static_cast<std::size_t>(a)], &to = shell.points[static_cast<std::size_t>(b)];
       const Vec3 direction = unit(minus(to, from));
       const auto number = edge_begin_ + static_cast<std::int32_t>(edges_.size() / 16);

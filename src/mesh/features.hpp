@@ -1,5 +1,5 @@
-/// Faces, edges and corners of a surface, as contacts see them: what of it can be the nearest to a point of the room,
-/// locally.
+/// Faces, edges and corners of a surface, as contacts see them: what of it can be the nearest to a point of the
+/// interior, locally.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,8 @@
 namespace packmpi::mesh {
 
 /// Triangles of one plane that hang together are one face: seams inside it are nothing. Edges are those that stick out
-/// into the room between two faces; in inner corners two faces are touched. Corners are the ends of such edges. Local.
+/// into the interior between two faces; in inner corners two faces are touched. Corners are the ends of such edges.
+/// Local.
 class Features {
  public:
   Features() = default;

@@ -1,4 +1,4 @@
-// Volumes and sections of a room, and of what spheres have in it.
+// Volumes and sections of an interior, and of what spheres have in it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -116,7 +116,7 @@ double Surface::volume_below(double height, std::size_t axis, double limit) cons
   return below.moment;
 }
 
-double Surface::room_between(double margin, double low, double high) const {
+double Surface::volume_within(double margin, double low, double high) const {
   const double exact = volume_below(high) - volume_below(low);
   if (!(margin > 0.0)) return exact;
   constexpr int side = 48;

@@ -68,7 +68,8 @@ void join_corners(Shell& shell, const std::vector<Corners>& triangles, const std
   const Vec3 size = minus(shell.high, shell.low);
   const double largest = *std::ranges::max_element(size), smallest = *std::ranges::min_element(size);
   if (!(smallest > 1e-5 * largest) || !(largest < 1e100) || !(largest > 1e-100)) {
-    refuse_shell(name, fmt::format("it is {:g} x {:g} x {:g} m large and closes no room", size[0], size[1], size[2]));
+    refuse_shell(name,
+                 fmt::format("it is {:g} x {:g} x {:g} m large and encloses no volume", size[0], size[1], size[2]));
   }
   shell.tolerance = 1e-6 * largest;
   Weld weld(shell);
@@ -160,7 +161,7 @@ std::vector<int> same_side(Shell& shell, const std::string& name) {
         const auto other = at(shell.neighbours[t].at(k));
         const bool alike = runs(shell, other, shell.triangles[t].at(k), shell.triangles[t].at((k + 1) % 3));
         if (part[other] >= 0) {
-          if (alike) refuse_shell(name, "the surface has one side only: it closes no room");
+          if (alike) refuse_shell(name, "the surface has one side only: it encloses no volume");
           continue;
         }
         if (alike) turn(shell, other);
@@ -222,7 +223,7 @@ void look_outside(Shell& shell, const std::vector<int>& part, const std::string&
     double volume = 0.0;
     for (const std::size_t t : parts[p].triangles) volume += six_volumes(shell.corners(t), first) / 6.0;
     if (!(std::abs(volume) > shell.tolerance * shell.tolerance * shell.tolerance)) {
-      refuse_shell(name, fmt::format("the part of the surface at {} closes no room", place(first)));
+      refuse_shell(name, fmt::format("the part of the surface at {} encloses no volume", place(first)));
     }
     int depth = 0;
     for (std::size_t other = 0; other < parts.size(); ++other) {

@@ -13,10 +13,10 @@ namespace packmpi::mesh {
 struct Mended {
   std::int64_t dropped = 0;  ///< triangles without an area
   std::int64_t turned = 0;   ///< triangles that looked inside
-  int parts = 1;             ///< closed surfaces, of which those inside others are holes in the room
+  int parts = 1;             ///< closed surfaces, of which those inside others are holes in the interior
 };
 
-/// Closed: each edge belongs to two triangles. Their corners go anticlockwise for who looks from outside the room.
+/// Closed: each edge belongs to two triangles. Their corners go anticlockwise for who looks from outside the interior.
 struct Shell {
   std::vector<Vec3> points;                    ///< [m]
   std::vector<std::array<int, 3>> triangles;   ///< three of the points each
@@ -30,8 +30,8 @@ struct Shell {
     return {points[static_cast<std::size_t>(t[0])], points[static_cast<std::size_t>(t[1])],
             points[static_cast<std::size_t>(t[2])]};
   }
-  [[nodiscard]] double volume() const;                    ///< [m3] of the room
-  [[nodiscard]] Vec3 normal(std::size_t triangle) const;  ///< out of the room, twice as long as the area [m2]
+  [[nodiscard]] double volume() const;                    ///< [m3] of the interior
+  [[nodiscard]] Vec3 normal(std::size_t triangle) const;  ///< out of the interior, twice as long as the area [m2]
   /// Not higher than the tolerance: it has a place in the surface, and no plane of its own.
   [[nodiscard]] bool is_needle(std::size_t triangle) const;
 };

@@ -52,7 +52,7 @@ void Surface::weigh_points() {
   }
 }
 
-// Steps from the cells that the surface meets; the others hang together in regions that are in the room or outside.
+// Steps from the cells that the surface meets; the others hang together in regions that are in the interior or outside.
 void Surface::fill_cells() {
   constexpr std::int16_t unknown = -1, most = 10000;
   const std::int64_t cells = grid_.cells();

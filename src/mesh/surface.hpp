@@ -1,4 +1,4 @@
-/// A room inside a closed surface of triangles: volumes, sections, distances.
+/// An interior inside a closed surface of triangles: volumes, sections, distances.
 #pragma once
 #include <cstdint>
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace packmpi::mesh {
 
 /// What is nearest to a point.
 struct Nearest {
-  double distance;  ///< [m], negative outside the room
+  double distance;  ///< [m], negative outside the interior
   Vec3 place;       ///< [m] of the surface
 };
 
@@ -44,20 +44,20 @@ class Surface {
   [[nodiscard]] const Shell& shell() const { return shell_; }
   [[nodiscard]] const Vec3& low() const { return shell_.low; }    ///< [m] of the box around it
   [[nodiscard]] const Vec3& high() const { return shell_.high; }  ///< [m]
-  [[nodiscard]] double volume() const { return volume_; }         ///< [m3] of the room
+  [[nodiscard]] double volume() const { return volume_; }         ///< [m3] of the interior
   /// Of the triangles' corners: what names this surface in files.
   [[nodiscard]] std::uint64_t digest() const { return digest_; }
 
-  /// [m3] of the room below a height [m]. To rounding: triangles are cut at the height. Cost: O(triangles).
+  /// [m3] of the interior below a height [m]. To rounding: triangles are cut at the height. Cost: O(triangles).
   [[nodiscard]] double volume_below(double height) const;
   /// [m3] of the part of it that has coordinate `axis` (0 or 1) below `limit` [m]. To rounding.
   [[nodiscard]] double volume_below(double height, std::size_t axis, double limit) const;
-  /// [m3] of the room between two heights that is `margin` [m] away from the surface at least: exact if that is 0, else
-  /// by 110,592 points of a grid, within a percent.
-  [[nodiscard]] double room_between(double margin, double low, double high) const;
+  /// [m3] of the interior between two heights that is `margin` [m] away from the surface at least: exact if that is 0,
+  /// else by 110,592 points of a grid, within a percent.
+  [[nodiscard]] double volume_within(double margin, double low, double high) const;
   /// [m2] of the surface below a height, without what lies flat.
   [[nodiscard]] double walls_below(double height) const;
-  /// [m2] of the room's section at a height; of a floor that lies in it, what is right below.
+  /// [m2] of the interior's section at a height; of a floor that lies in it, what is right below.
   [[nodiscard]] double area_at(double height) const;
 
   /// Does any of the surface lie inside the box from `low` to `high`?
@@ -66,19 +66,19 @@ class Surface {
   /// The nearest place of the surface, and on which side of it the point is, told by the angles of the triangles there
   /// (Baerentzen and Aanaes 2005).
   [[nodiscard]] Nearest nearest(const Vec3& x) const;
-  /// [m] to the surface, negative outside; cut at `range` in the room and at -range outside of it. Cheap where it is
-  /// farther.
+  /// [m] to the surface, negative outside; cut at `range` in the interior and at -range outside of it. Cheap where it
+  /// is farther.
   [[nodiscard]] double distance(const Vec3& x, double range) const;
 
-  /// Is x in the room and at least `r` [m] away from the surface, r above 0? As distance(x, r) >= r says, to the bit,
-  /// but without looking for the nearest place.
+  /// Is x in the interior and at least `r` [m] away from the surface, r above 0? As distance(x, r) >= r says, to the
+  /// bit, but without looking for the nearest place.
   [[nodiscard]] bool fits(const Vec3& x, double r) const;
 
-  /// How far outside the room x is [m]; inside it a negative number, not more than the distance. NaN if a coordinate
-  /// is.
+  /// How far outside the interior x is [m]; inside it a negative number, not more than the distance. NaN if a
+  /// coordinate is.
   [[nodiscard]] double beyond(const Vec3& x) const;
-  /// Is x in no cell of the grid that the room reaches into? What is outside and not far from the surface may not be
-  /// known to be.
+  /// Is x in no cell of the grid that the interior reaches into? What is outside and not far from the surface may not
+  /// be known to be.
   [[nodiscard]] bool surely_outside(const Vec3& x) const {
     return clear_[static_cast<std::size_t>(grid_.cell_of(x))] < 0;
   }
@@ -101,7 +101,7 @@ class Surface {
   void touches(const Vec3& x, double range, double behind,
                const std::function<void(std::int32_t, const Touch&)>& found) const;
 
-  /// [m3] of a sphere what is in the room. In closed form, to rounding.
+  /// [m3] of a sphere what is in the interior. In closed form, to rounding.
   [[nodiscard]] double volume_of_sphere(const Vec3& x, double r) const;
 
  private:
@@ -118,7 +118,7 @@ class Surface {
   [[nodiscard]] Hit hit(const Vec3& x, int triangle) const;
   [[nodiscard]] bool may_be_near(const Vec3& x, int triangle, double range) const;
   [[nodiscard]] Vec3 outward(const Hit& hit) const;
-  /// Above 0: x is in the room, below: outside. No triangle is nearer than `clear` [m].
+  /// Above 0: x is in the interior, below: outside. No triangle is nearer than `clear` [m].
   [[nodiscard]] int side_of(const Vec3& x, double clear) const;
   void weigh_points();
   void fill_cells();
@@ -128,7 +128,7 @@ class Surface {
   Features features_;
   std::vector<Spot> spot_;           // of triangles
   std::vector<Vec3> point_;          // normals of points, weighted by angles
-  std::vector<std::int16_t> clear_;  // of a cell: steps to one that the surface meets, negative outside the room
+  std::vector<std::int16_t> clear_;  // of a cell: steps to one that the surface meets, negative outside the interior
   double volume_ = 0.0;
   std::uint64_t digest_ = 0;
 };

@@ -167,7 +167,7 @@ bool Neighborhood::is_inside(const particles::Store& store, LocalIndex i) const 
   const double z = x[static_cast<std::size_t>(box.vertical())];
   if (box.is_mesh()) {
     const bool under_lid = !box.lid || z < *box.lid + store.radius(i);
-    return norm(x) < HUGE_VAL && under_lid && !box.room->surely_outside(x);
+    return norm(x) < HUGE_VAL && under_lid && !box.interior->surely_outside(x);
   }
   return box.beyond(x) < store.radius(i) && z < highest * (box.height() + scene_->in.layers.thickness);
 }

@@ -79,7 +79,7 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
 
 /// Volume [m3] of a column inside a round vessel up to H_d, from 32 x 32 points, at 32 heights if its walls are not
 /// straight: within a percent of a column; 0 if it is less than an eighth of the column.
-double room_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
+double volume_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
   constexpr int side = 32;
   const std::int64_t row = column / maps.counts[0];
   const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(row);
@@ -114,7 +114,7 @@ ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, co
   if (!box.is_box()) {
     const std::int64_t first = comm.sum_below(std::ssize(maps.solid_fraction));
     for (std::size_t k = 0; k < maps.solid_fraction.size(); ++k) {  // of a sliver nothing can be said
-      const double volume = room_in(box, maps, first + static_cast<std::int64_t>(k));
+      const double volume = volume_in(box, maps, first + static_cast<std::int64_t>(k));
       maps.solid_fraction[k] = volume > 0.0 ? maps.solid_fraction[k] / volume : 0.0;
       maps.vertical_stress[k] = volume > 0.0 ? maps.vertical_stress[k] / volume : 0.0;
     }

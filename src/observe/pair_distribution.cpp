@@ -11,7 +11,7 @@ namespace {
 
 constexpr double bins_a_diameter = 50.0;
 
-// The room in which every centre has its whole shell inside the pack.
+// The region in which every centre has its whole shell inside the pack.
 struct Interior {
   std::array<double, 3> low{}, high{};
   geometry::Container box;  // round: at least `margin` from its side walls
@@ -23,7 +23,7 @@ struct Interior {
     return box.holds(x, margin);
   }
   [[nodiscard]] double volume(int dimension) const {
-    if (!box.is_box()) return box.room_between(margin, low[dimension - 1], high[dimension - 1]);
+    if (!box.is_box()) return box.volume_within(margin, low[dimension - 1], high[dimension - 1]);
     double v = 1.0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) v *= std::max(0.0, high[a] - low[a]);
     return v;

@@ -48,9 +48,9 @@ Profile density_profile(const Specimen& pack, int axis) {
   if (!box.is_box() && !(vertical && box.straight())) {
     for (std::size_t k = 0; k < bins; ++k) {
       const double low = static_cast<double>(k) * profile.width, high = low + profile.width;
-      const double room =
+      const double volume =
           vertical ? box.volume_between(low, high) : box.slab(a, low, high, pack.bulk.low, pack.bulk.high);
-      profile.values[k] = room > 0.0 ? profile.values[k] / room : 0.0;
+      profile.values[k] = volume > 0.0 ? profile.values[k] / volume : 0.0;
     }
     return profile;
   }

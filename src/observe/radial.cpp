@@ -35,7 +35,7 @@ double widest_margin(const geometry::Container& vessel, double low, double high)
   double inside = 0.0, outside = vessel.radius();
   for (int turn = 0; turn < 50; ++turn) {
     const double middle = 0.5 * (inside + outside);
-    (vessel.room_between(middle, low, high) > 0.0 ? inside : outside) = middle;
+    (vessel.volume_within(middle, low, high) > 0.0 ? inside : outside) = middle;
   }
   return inside;
 }
@@ -54,11 +54,11 @@ double farthest(const Specimen& pack, Surface surface) {
   return std::max({at(low), at(high), vessel.shape == geometry::Shape::sphere ? at(middle) : 0.0});
 }
 
-// Of the bulk's room what is between two distances from a wall [m3].
+// Of the bulk's interior what is between two distances from a wall [m3].
 double shell(const Specimen& pack, Surface surface, double from, double to) {
   const geometry::Container& vessel = pack.scene.container;
   const double low = pack.bulk.low, high = pack.bulk.high;
-  if (!vessel.straight()) return vessel.room_between(from, low, high) - vessel.room_between(to, low, high);
+  if (!vessel.straight()) return vessel.volume_within(from, low, high) - vessel.volume_within(to, low, high);
   const bool inner = surface == Surface::inner;
   const double a = inner ? vessel.core + to : vessel.radius() - from;
   const double b = inner ? vessel.core + from : vessel.radius() - to;
@@ -76,8 +76,8 @@ Profile profile_from(const Specimen& pack, Surface surface) {
   const std::vector<double> volumes = solid_away(pack, surface, margins);
   Profile profile{.from = 0.0, .width = width, .values = {}};
   for (std::size_t k = 0; k < shells; ++k) {
-    const double room = shell(pack, surface, margins[k], margins[k + 1]);
-    profile.values.push_back(room > 0.0 ? (volumes[k] - volumes[k + 1]) / room : 0.0);
+    const double volume = shell(pack, surface, margins[k], margins[k + 1]);
+    profile.values.push_back(volume > 0.0 ? (volumes[k] - volumes[k + 1]) / volume : 0.0);
   }
   return profile;
 }
@@ -87,18 +87,18 @@ double core_of(const Specimen& pack, double margin) {
   const geometry::Container& vessel = pack.scene.container;
   const double diameter = 2.0 * pack.scene.sizes.mean(), depth = pack.bulk.depth();
   const double section = vessel.dimension == 3 ? 0.25 * std::numbers::pi * diameter * diameter : diameter;
-  const double room = vessel.room_between(margin, pack.bulk.low, pack.bulk.high);
+  const double volume = vessel.volume_within(margin, pack.bulk.low, pack.bulk.high);
   std::vector<double> margins{margin};
   if (vessel.shape == geometry::Shape::annulus) {
     const double gap = vessel.radius() - vessel.core;
     if (gap - 2.0 * margin < diameter) return 0.0;
     margins.push_back(gap - margin);  // what the inner wall takes
-  } else if (vessel.straight() ? vessel.radius() - margin < 0.5 * diameter : room < section * depth) {
+  } else if (vessel.straight() ? vessel.radius() - margin < 0.5 * diameter : volume < section * depth) {
     return 0.0;
   }
   std::vector<double> volumes = solid_away(pack, Surface::mantle, margins);
   volumes.push_back(0.0);
-  return (volumes[0] - volumes[1]) / room;
+  return (volumes[0] - volumes[1]) / volume;
 }
 
 }  // namespace

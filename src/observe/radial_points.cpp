@@ -19,8 +19,8 @@ constexpr std::int64_t least_points = 400;  // of a shell
 /// Cells of the bulk's box, a point in each.
 class Points {
  public:
-  explicit Points(const Specimen& pack) : seed_(pack.scene.in.seed), room_(*pack.scene.container.room) {
-    low_ = room_.low(), high_ = room_.high();
+  explicit Points(const Specimen& pack) : seed_(pack.scene.in.seed), interior_(*pack.scene.container.interior) {
+    low_ = interior_.low(), high_ = interior_.high();
     low_[2] = pack.bulk.low, high_[2] = pack.bulk.high;
     for (std::size_t a = 0; a < 3; ++a) cell_[a] = (high_[a] - low_[a]) / side;
   }
@@ -39,11 +39,11 @@ class Points {
     };
     return {std::max(0, number(centre[axis] - r)), std::min(side - 1, number(centre[axis] + r))};
   }
-  [[nodiscard]] const mesh::Surface& room() const { return room_; }
+  [[nodiscard]] const mesh::Surface& interior() const { return interior_; }
 
  private:
   std::uint64_t seed_;
-  const mesh::Surface& room_;
+  const mesh::Surface& interior_;
   Vec3 low_{}, high_{}, cell_{};
 };
 
@@ -53,9 +53,9 @@ class Shells {
   explicit Shells(double diameter)
       : width_(diameter / shells_a_diameter),
         counts_(static_cast<std::size_t>(shells_a_diameter * farthest_in_diameters) + 1, 0) {}
-  void add(const mesh::Surface& room, const Vec3& x) {
+  void add(const mesh::Surface& interior, const Vec3& x) {
     const double end = width_ * static_cast<double>(counts_.size() - 1);
-    const double away = room.distance(x, end);
+    const double away = interior.distance(x, end);
     if (away < 0.0) return;
     ++counts_[std::min(counts_.size() - 1, static_cast<std::size_t>(away / width_))];
   }
@@ -68,9 +68,9 @@ class Shells {
 };
 
 /// Collective.
-std::vector<std::int64_t> room_points(const Specimen& pack, const Points& points, Shells shells) {
+std::vector<std::int64_t> interior_points(const Specimen& pack, const Points& points, Shells shells) {
   for (int z = pack.comm.rank(); z < side; z += pack.comm.size()) {
-    for (int k = 0; k < side * side; ++k) shells.add(points.room(), points.at({k % side, k / side, z}));
+    for (int k = 0; k < side * side; ++k) shells.add(points.interior(), points.at({k % side, k / side, z}));
   }
   pack.comm.sum(std::span(shells.counts()));
   return shells.counts();
@@ -88,7 +88,7 @@ std::vector<std::int64_t> solid_points(const Specimen& pack, const Points& point
         for (int x = cells[0][0]; x <= cells[0][1]; ++x) {
           const Vec3 place = points.at({x, y, z});
           const Vec3 d = mesh::minus(place, centre);
-          if (dot(d, d) < r * r) shells.add(points.room(), place);
+          if (dot(d, d) < r * r) shells.add(points.interior(), place);
         }
       }
     }
@@ -103,19 +103,20 @@ RadialProfile radial_by_points(const Specimen& pack) {
   const double diameter = 2.0 * pack.scene.sizes.mean();
   const Points points(pack);
   const Shells none(diameter);
-  const std::vector<std::int64_t> room = room_points(pack, points, none), solid = solid_points(pack, points, none);
+  const std::vector<std::int64_t> interior = interior_points(pack, points, none),
+                                  solid = solid_points(pack, points, none);
   RadialProfile result;
   result.profile = {.from = 0.0, .width = none.width(), .values = {}};
-  for (std::size_t k = 0; k + 1 < room.size() && room[k] >= least_points; ++k) {
-    result.profile.values.push_back(static_cast<double>(solid[k]) / static_cast<double>(room[k]));
+  for (std::size_t k = 0; k + 1 < interior.size() && interior[k] >= least_points; ++k) {
+    result.profile.values.push_back(static_cast<double>(solid[k]) / static_cast<double>(interior[k]));
   }
   result.from_walls = core_in_diameters * diameter;
   const auto first = static_cast<std::ptrdiff_t>(core_in_diameters * shells_a_diameter);
   const auto beyond = [&](const std::vector<std::int64_t>& counts) {
     return std::accumulate(counts.begin() + first, counts.end(), std::int64_t{0});
   };
-  if (beyond(room) >= least_points) {
-    result.core = static_cast<double>(beyond(solid)) / static_cast<double>(beyond(room));
+  if (beyond(interior) >= least_points) {
+    result.core = static_cast<double>(beyond(solid)) / static_cast<double>(beyond(interior));
   }
   return result;
 }

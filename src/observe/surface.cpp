@@ -21,13 +21,13 @@ ColumnNumbering make_columns(const scene::Scene& scene) {
   return columns;
 }
 
-constexpr int most_turns = 6;      // until a surface is found that is as high as its own room makes it
+constexpr int most_turns = 6;      // until a surface is found that is as high as its own area makes it
 constexpr int samples_a_side = 8;  // of a column: points that tell how much of it is in a round vessel
 
 /// At how many of the column's points centres can be that lie at a height [m]; all of them in a box.
-std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, std::int64_t column, double height) {
+std::int64_t places_of(const scene::Scene& scene, const ColumnNumbering& columns, std::int64_t column, double height) {
   const std::array<std::int64_t, 2> at{column % columns.counts[0], column / columns.counts[0]};
-  std::int64_t room = 0;
+  std::int64_t places = 0;
   for (int k = 0; k < samples_a_side * samples_a_side; ++k) {
     const std::array<int, 2> point{k % samples_a_side, k / samples_a_side};
     std::array<double, 2> x{};
@@ -36,17 +36,18 @@ std::int64_t room_of(const scene::Scene& scene, const ColumnNumbering& columns, 
       x[axis] =
           (static_cast<double>(at[axis]) + share) * columns.lengths[axis] / static_cast<double>(columns.counts[axis]);
     }
-    if (scene.container.holds(scene.container.at(x[0], x[1], height), scene.sizes.mean())) ++room;
+    if (scene.container.holds(scene.container.at(x[0], x[1], height), scene.sizes.mean())) ++places;
   }
-  return room;
+  return places;
 }
 
 /// Collective. The same of all columns; each rank looks at its share of them.
-std::int64_t room_of_all(const comm::Comm& comm, const scene::Scene& scene, const ColumnNumbering& columns,
-                         double height) {
-  std::int64_t room = 0;
-  for (std::int64_t k = comm.rank(); k < columns.size(); k += comm.size()) room += room_of(scene, columns, k, height);
-  return comm.sum(room);
+std::int64_t places_of_all(const comm::Comm& comm, const scene::Scene& scene, const ColumnNumbering& columns,
+                           double height) {
+  std::int64_t places = 0;
+  for (std::int64_t k = comm.rank(); k < columns.size(); k += comm.size())
+    places += places_of(scene, columns, k, height);
+  return comm.sum(places);
 }
 
 /// Collective. Columns are dealt out in runs; the tops of those of this rank's run that hold any particle of any rank.
@@ -104,8 +105,8 @@ double surface_height(const comm::Comm& comm, std::span<const particles::Store* 
   for (int turn = 0; turn < turns; ++turn) {
     const double level = surface - scene.sizes.mean();
     std::vector<ColumnValue> weighted = tops;
-    for (ColumnValue& top : weighted) top.value *= static_cast<double>(room_of(scene, columns, top.column, level));
-    const auto all = static_cast<double>(std::max<std::int64_t>(1, room_of_all(comm, scene, columns, level)));
+    for (ColumnValue& top : weighted) top.value *= static_cast<double>(places_of(scene, columns, top.column, level));
+    const auto all = static_cast<double>(std::max<std::int64_t>(1, places_of_all(comm, scene, columns, level)));
     const double next = sum(weighted) / all;
     if (next == surface) break;  // nothing would change any more
     surface = next;

@@ -60,8 +60,8 @@ void plan_layer(const comm::Comm& comm, const scene::Scene& scene, double fracti
                 LayerRegion& region) {
   const double whole =
       scene.in.layers.fraction * scene.container.mean_area(region.bottom, region.thickness) * region.thickness;
-  const double room = control::room_in_stratum(scene, fraction, mixing);
-  const double extent = std::min(whole, room);
+  const double left = control::left_in_stratum(scene, fraction, mixing);
+  const double extent = std::min(whole, left);
   const scene::Recipe recipe = scene::recipe_of(scene, static_cast<std::size_t>(mixing.stratum));
   const double particles = extent / recipe.mean_extent;
   region.portions.clear();
@@ -82,7 +82,7 @@ void plan_layer(const comm::Comm& comm, const scene::Scene& scene, double fracti
   }
   mixing.extent += extent;
   mixing.stratum_extent += extent;
-  if (room <= whole) ++mixing.stratum_layers;
+  if (left <= whole) ++mixing.stratum_layers;
   mixing.strata.push_back(mixing.stratum);
 }
 

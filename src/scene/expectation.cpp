@@ -75,7 +75,7 @@ double by_borders(const Scene& scene) {
       if (!scene.container.periodic[axis]) left -= missing_at_walls * mean / scene.container.size[axis];
     }
   } else {
-    left -= missing_at_walls * mean * 0.5 * scene.container.walls_over_room();
+    left -= missing_at_walls * mean * 0.5 * scene.container.walls_over_volume();
   }
   const double missing = scene.sizes.equal() ? missing_at_surface : missing_at_uneven_surface;
   left *= 1.0 - std::min(0.5, missing * largest / scene.container.height());
@@ -229,7 +229,7 @@ double finished_height(const Scene& scene) {
 
 double pressing_depth(const Scene& scene, double depth) {
   constexpr double lateral = 0.5;  // share of the vertical stress
-  const double rate = lateral * scene.in.contact.wall_friction * scene.container.walls_over_room();
+  const double rate = lateral * scene.in.contact.wall_friction * scene.container.walls_over_volume();
   return rate * depth > 1e-6 ? (1.0 - elementary::exponential(-rate * depth)) / rate : depth;
 }
 

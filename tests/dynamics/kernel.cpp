@@ -95,7 +95,7 @@ LocalIndex first_difference(const Cloud& a, const Cloud& b) {
 std::vector<CloudPlan> plans() {
   return {
       {.owned = 150, .ghosts = 40, .seed = 1},
-      {.owned = 150, .ghosts = 0, .ring_room = 3.0, .seed = 2},
+      {.owned = 150, .ghosts = 0, .ring_slack = 3.0, .seed = 2},
       {.owned = 200, .ghosts = 30, .window = 3, .seed = 3},                // tiny ring, blocks cut short
       {.owned = 50, .ghosts = 150, .skin = 1e9, .seed = 4},                // every pair: hundreds for one owner
       {.owned = 170, .ghosts = 20, .skin = 1e9, .window = 64, .seed = 5},  // ring of exactly the window

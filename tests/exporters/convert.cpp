@@ -378,7 +378,7 @@ TEST_F(Convert, ASpecimenInASurfaceOfAFile) {
   EXPECT_EQ(done.particles, static_cast<std::int64_t>(ids.size()));
   EXPECT_GT(ids.size(), 10U);
   EXPECT_NEAR(done.cut_fraction, solid / 0.375, 1e-9);
-  EXPECT_EQ(done.cut, "the room of 0.375 m3 inside the 252 triangles of l.stl");
+  EXPECT_EQ(done.cut, "the interior of 0.375 m3 inside the 252 triangles of l.stl");
   if (comm_.rank() == 0) {
     const auto rows = rows_of(done.files[0]);
     ASSERT_EQ(rows.size(), ids.size());
@@ -521,7 +521,7 @@ TEST_F(Convert, WallsOfVesselsIn2DAreThoseThatACodeHas) {
   EXPECT_TRUE(contains(lammps, "region          side2 plane 12 0 0 -1 0 0 side in units box"));
   const std::string left = "region          side3 plane ";
   ASSERT_TRUE(contains(lammps, left));
-  std::array<double, 6> plane{};  // a point of it, and the normal into the room
+  std::array<double, 6> plane{};  // a point of it, and the normal into the interior
   std::istringstream numbers(lammps.substr(lammps.find(left) + left.size()));
   for (double& number : plane) numbers >> number;
   EXPECT_NEAR(plane[0] / 3.0 + plane[1], 1.0, 1e-14);  // through (3, 0) and (0, 1)
@@ -549,7 +549,7 @@ TEST_F(Convert, AMeshIsCarriedAsTriangles) {
   const std::string facets =
       script.substr(script.find("for corners in [\n"), script.find("\n]]") - script.find("for corners in [\n"));
   EXPECT_EQ(std::ranges::count(facets, '\n'), 6) << "a facet over each side of the box: " << facets;
-  EXPECT_TRUE(contains(script, "# mesh: the room of 1.5 m3 inside 48 triangles, from z = 0 to 1.5"));
+  EXPECT_TRUE(contains(script, "# mesh: the interior of 1.5 m3 inside 48 triangles, from z = 0 to 1.5"));
   const mesh::Surface ell(testing::l_prism(1.0), "ell");
   EXPECT_EQ(exporters::yade::facets(ell).size(), ell.shell().triangles.size()) << "an edge sticks out";
   const Converted liggghts = convert_pack(comm_, {.pack = path, .format = "liggghts", .force = true});

@@ -13,9 +13,9 @@
 namespace packmpi::fuzz {
 namespace {
 
-/// Of what was taken: it has a room, its text is read as the same surface, and distances agree with each other.
+/// Of what was taken: it has an interior, its text is read as the same surface, and distances agree with each other.
 void check_taken(const mesh::Surface& surface) {
-  demand(surface.volume() > 0.0 && std::isfinite(surface.volume()), "a surface without a room is accepted");
+  demand(surface.volume() > 0.0 && std::isfinite(surface.volume()), "a surface without an interior is accepted");
   const std::string text = mesh::obj_text(surface.shell());
   const mesh::Surface again(mesh::read_triangles(text, "again.obj"), "again");
   demand(again.digest() == surface.digest(), "its text is read as another surface");

@@ -25,9 +25,9 @@ Container circle() {
   return made;
 }
 
-/// Area of where `room` is positive, by lines along z whose ends are found by halving.
-double area_by_lines(const std::function<double(double, double)>& room, double from, double to, double low, double high,
-                     int lines) {
+/// Area of where `interior` is positive, by lines along z whose ends are found by halving.
+double area_by_lines(const std::function<double(double, double)>& interior, double from, double to, double low,
+                     double high, int lines) {
   double sum = 0.0;
   for (int k = 0; k < lines; ++k) {
     const double x = from + (to - from) * (k + 0.5) / lines;
@@ -35,13 +35,13 @@ double area_by_lines(const std::function<double(double, double)>& room, double f
     const auto z_of = [&](double n) { return low + (high - low) * n / looks; };
     for (int n = 0; n < looks; ++n) {
       double a = z_of(n), b = z_of(n + 1);
-      const bool first = room(x, a) > 0.0, second = room(x, b) > 0.0;
+      const bool first = interior(x, a) > 0.0, second = interior(x, b) > 0.0;
       if (first && second) sum += b - a;
       if (first == second) continue;
       const double end = first ? a : b;
       for (int turn = 0; turn < 50; ++turn) {
         const double middle = 0.5 * (a + b);
-        (room(x, middle) > 0.0) == first ? a = middle : b = middle;
+        (interior(x, middle) > 0.0) == first ? a = middle : b = middle;
       }
       sum += std::abs(a - end);
     }
@@ -65,7 +65,7 @@ TEST(Circle, HasOneWallAroundIt) {
 
 TEST(Circle, ItsRoomIsThatOfSegments) {
   const Container v = circle();
-  const auto room = [&](double margin) {
+  const auto interior = [&](double margin) {
     return [&v, margin](double x, double z) { return v.from_sides({x, z, 0.0}) - margin; };
   };
   EXPECT_NEAR(v.volume_between(0.0, 2.0), std::numbers::pi, 1e-15);
@@ -74,10 +74,10 @@ TEST(Circle, ItsRoomIsThatOfSegments) {
   EXPECT_NEAR(v.wall_area(2.0), 2.0 * std::numbers::pi, 1e-14);
   EXPECT_NEAR(v.wall_area(0.5), 2.0 / 3.0 * std::numbers::pi, 1e-14);  // 60 degrees to both sides of its lowest point
   for (const double margin : {0.0, 0.13}) {
-    const double area = area_by_lines(room(margin), 0.0, 2.0, 0.3, 1.4, 4000);
-    EXPECT_NEAR(v.room_between(margin, 0.3, 1.4), area, 1e-5);
+    const double area = area_by_lines(interior(margin), 0.0, 2.0, 0.3, 1.4, 4000);
+    EXPECT_NEAR(v.volume_within(margin, 0.3, 1.4), area, 1e-5);
   }
-  const double slab = area_by_lines(room(0.0), 0.2, 0.7, 0.3, 1.4, 4000);
+  const double slab = area_by_lines(interior(0.0), 0.2, 0.7, 0.3, 1.4, 4000);
   EXPECT_NEAR(v.slab(0, 0.2, 0.7, 0.3, 1.4), slab, 1e-6);
   EXPECT_NEAR(v.slab(0, 0.0, 2.0, 0.3, 1.4), v.volume_between(0.3, 1.4), 1e-14);
   for (const double z : {0.1, 0.8, 1.5}) EXPECT_NEAR(v.level(v.volume_between(0.0, z)), z, 1e-12);
@@ -97,10 +97,10 @@ void expect_even_places(const Container& v, double low, double high) {
     ASSERT_TRUE(x[1] >= low + r - 1e-15 && x[1] <= high - r + 1e-15 && x[2] == 0.0);
     ++counts.at((x[0] < 0.8 ? 0U : 1U) + (x[1] < 0.9 ? 0U : 2U));
   }
-  const double all = v.room_between(r, low + r, high - r);
+  const double all = v.volume_within(r, low + r, high - r);
   const auto share = [&](double from, double to, double a, double b) {
-    const auto room = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - r; };
-    return area_by_lines(room, from, to, a, b, 2000) / all;
+    const auto interior = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - r; };
+    return area_by_lines(interior, from, to, a, b, 2000) / all;
   };
   const double bottom = low + r, top = high - r;
   const std::array<double, 4> wanted{share(0.0, 0.8, bottom, 0.9), share(0.8, 2.0, bottom, 0.9),
@@ -206,12 +206,12 @@ TEST(Polygons, RoomsAreWhatIsInsideTheirSides) {
   for (const Polygon* polygon : polygons()) {
     const Container v = in_polygon(*polygon, 1.5);
     for (const double margin : {0.0, 0.13}) {
-      const auto room = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - margin; };
+      const auto interior = [&](double x, double z) { return v.from_sides({x, z, 0.0}) - margin; };
       for (const auto& [low, high] : {std::pair(0.05, 1.5), std::pair(0.3, 0.9), std::pair(1.2, 2.1)}) {
-        EXPECT_NEAR(v.room_between(margin, low, high), area_by_lines(room, 0.0, 2.0, low, high, 4000), 2e-4);
+        EXPECT_NEAR(v.volume_within(margin, low, high), area_by_lines(interior, 0.0, 2.0, low, high, 4000), 2e-4);
       }
       if (margin > 0.0) continue;
-      EXPECT_NEAR(v.slab(0, 0.2, 0.7, 0.3, 1.4), area_by_lines(room, 0.2, 0.7, 0.3, 1.4, 4000), 1e-6);
+      EXPECT_NEAR(v.slab(0, 0.2, 0.7, 0.3, 1.4), area_by_lines(interior, 0.2, 0.7, 0.3, 1.4, 4000), 1e-6);
     }
     for (const double z : {0.1, 0.8, 1.5}) {
       EXPECT_NEAR(v.level(v.volume_between(0.0, z)), z, 1e-12);
@@ -257,16 +257,16 @@ TEST(Polygons, CutDiscsToABillionth) {
         parts += area_in_polygon(r, x, house().within(0.0, bottom, top, from, to));
     }
     EXPECT_NEAR(parts, whole, 1e-9 * square) << k;
-    const auto room = [&](double a, double b) {
+    const auto interior = [&](double a, double b) {
       const Vec3 at{a, b, 0.0};
       const double across = std::hypot(a - x[0], b - x[1]);
       return std::min(-v.beyond(at), r - across);
     };
     if (k < 20) {
-      EXPECT_NEAR(whole, area_by_lines(room, x[0] - r, x[0] + r, x[1] - r, x[1] + r, 2000), 2e-3 * square);
+      EXPECT_NEAR(whole, area_by_lines(interior, x[0] - r, x[0] + r, x[1] - r, x[1] + r, 2000), 2e-3 * square);
     }
     if (whole > 0.0 && whole < 0.99 * volume(2, r)) ++cut;
-    if (room(x[0], x[1]) >= r) {
+    if (interior(x[0], x[1]) >= r) {
       EXPECT_NEAR(whole, volume(2, r), 1e-13 * square);
     }
     EXPECT_NEAR(volume_away_from(v, Surface::mantle, 0.1, x, r, 0.2, 1.4),

@@ -178,11 +178,11 @@ TEST(Vessels, RoomsAreTheIntegralsOfTheirSections) {
           const bool above = v.has(Surface::collar) && v.facing(Surface::collar, x).distance < margin + 1e-7;
           return (area(z) > 0.0 ? 1 : 0) + (above ? 2 : 0);
         };
-        EXPECT_NEAR(v.room_between(margin, low, high), piecewise(area, state, low, high), 1e-9);
+        EXPECT_NEAR(v.volume_within(margin, low, high), piecewise(area, state, low, high), 1e-9);
       }
     }
     EXPECT_NEAR(v.area_at(0.7), area_away(v, 0.7, 0.0), 1e-9);
-    EXPECT_NEAR(v.volume_between(0.2, 1.1), v.room_between(0.0, 0.2, 1.1), 1e-15);
+    EXPECT_NEAR(v.volume_between(0.2, 1.1), v.volume_within(0.0, 0.2, 1.1), 1e-15);
     EXPECT_NEAR(v.mean_area(0.2, 0.9), v.volume_between(0.2, 1.1) / 0.9, 1e-15);
     for (const double z : {0.1, 0.8, 1.5}) EXPECT_NEAR(v.level(v.volume_between(0.0, z)), z, 1e-12);
   }
@@ -256,13 +256,13 @@ TEST(Vessels, SpheresAwayFromAWallAreThoseOfTheOffsetWall) {
   }
 }
 
-/// As many in each of equal parts: by the share of the room below, by that of the ring's area, by quarters.
+/// As many in each of equal parts: by the share of the interior below, by that of the ring's area, by quarters.
 TEST(Vessels, PlacesAreDrawnEvenlyOverTheRoom) {
   const double radius = 0.1, low = 0.1, thickness = 1.3;
   constexpr int side = 24;
   for (const Container& v : all_vessels()) {
     std::array<int, 64> counts{};
-    const double room = v.room_between(radius, low + radius, low + thickness - radius);
+    const double interior = v.volume_within(radius, low + radius, low + thickness - radius);
     for (int k = 0; k < side * side * side; ++k) {
       const int layer = k / (side * side), line = k / side % side;
       const Vec3 x =
@@ -270,7 +270,7 @@ TEST(Vessels, PlacesAreDrawnEvenlyOverTheRoom) {
       ASSERT_TRUE(v.holds(x, radius - 1e-12));
       ASSERT_GE(x[2], low + radius - 1e-12);
       ASSERT_LE(x[2], low + thickness - radius + 1e-12);
-      const double below = v.room_between(radius, low + radius, x[2]) / room;
+      const double below = v.volume_within(radius, low + radius, x[2]) / interior;
       const Ring ring = v.ring(x[2], radius);
       const double rho = std::hypot(x[0] - 1.0, x[1] - 1.0), inner = ring.inner * ring.inner;
       const double share = (rho * rho - inner) / (ring.outer * ring.outer - inner);

@@ -60,8 +60,8 @@ std::vector<Touch> touches(const Surface& surface, const Vec3& x, double range, 
   return found;
 }
 
-/// A room around a cube, and what is around a house of edges: all kinds of corners.
-Soup room_with_cube(int n) {
+/// An interior around a cube, and what is around a house of edges: all kinds of corners.
+Soup box_around_cube(int n) {
   Soup soup = testing::box({-2, -2, -2}, {2, 2, 2}, n);
   for (Corners c : testing::box({-0.5, -0.6, -0.7}, {0.6, 0.5, 0.4}, n)) {
     std::swap(c[1], c[2]);
@@ -72,15 +72,15 @@ Soup room_with_cube(int n) {
 
 TEST(Touch, IsEveryLocalMinimumOfTheDistance) {
   Dice dice(17);
-  Soup ball_in_room = testing::box({-2, -2, -2}, {2, 2, 2});
+  Soup ball_in_box = testing::box({-2, -2, -2}, {2, 2, 2});
   for (Corners c : testing::ball(2)) {
     std::swap(c[1], c[2]);
-    ball_in_room.push_back(c);
+    ball_in_box.push_back(c);
   }
-  const Soup turned = testing::moved(room_with_cube(3), [](const Vec3& x) { return testing::turned(x, 0.3, 0.9); });
+  const Soup turned = testing::moved(box_around_cube(3), [](const Vec3& x) { return testing::turned(x, 0.3, 0.9); });
   int touched = 0, several = 0;
   for (const Soup& soup : {testing::box({0, 0, 0}, {1, 1, 1}, 3), testing::l_prism(1.0, 2), testing::hopper(0.4, 2),
-                           room_with_cube(1), turned, ball_in_room, testing::ball(2)}) {
+                           box_around_cube(1), turned, ball_in_box, testing::ball(2)}) {
     const Surface surface(soup, "a");
     for (int k = 0; k < 400; ++k) {
       const Vec3 x = dice.point(-2.0, 2.0);
@@ -141,7 +141,7 @@ TEST(Touch, FeelsNoSeams) {
 
 /// Around edges and corners that stick out nothing jumps: each step changes the push by no more than its share.
 TEST(Touch, IsContinuousAroundEdgesAndCorners) {
-  const Surface surface(room_with_cube(2), "a");
+  const Surface surface(box_around_cube(2), "a");
   Dice dice(23);
   const double r = 0.3;
   double largest = 0.0;

@@ -120,7 +120,7 @@ TEST(Close, MendsAndSays) {
   EXPECT_EQ(turned.shell().mended.parts, 1);
 }
 
-/// A surface inside another is an obstacle, one inside that a room again, whichever way they look.
+/// A surface inside another is an obstacle, one inside that an interior again, whichever way they look.
 TEST(Close, ASurfaceInsideIsAHole) {
   Soup soup = testing::box({0, 0, 0}, {4, 4, 4});
   const auto add = [&](const Soup& more) { soup.insert(soup.end(), more.begin(), more.end()); };
@@ -155,7 +155,7 @@ TEST(Close, SaysWhatItCannotMend) {
     return x[0] == 0.5 && x[1] == 0.5 && x[2] == 1.0 ? Vec3{0.5, 0.5, -0.2} : x;
   });
   EXPECT_TRUE(holds(refused(pushed), "the surface cuts itself"));
-  EXPECT_TRUE(holds(refused({{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}), "1 x 1 x 0 m large and closes no room"));
+  EXPECT_TRUE(holds(refused({{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}), "1 x 1 x 0 m large and encloses no volume"));
   const std::array<Vec3, 6> p{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0.2}, {0.3, 1, 1}}};
   Soup hemi;  // of the icosahedron: the projective plane
   for (const std::array<int, 3>& t : {std::array{1, 2, 3},

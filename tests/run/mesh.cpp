@@ -77,7 +77,7 @@ TEST_F(PackInMesh, IsOneOnAnyNumberOfRanksAndAfterAStop) {
   ASSERT_GT(first.id.size(), 120U);
   double solid = 0.0;
   for (std::size_t k = 0; k < first.id.size(); ++k) {
-    EXPECT_GT(vessel.room->nearest(first.position[k]).distance, 0.97 * first.radius[k]) << k;
+    EXPECT_GT(vessel.interior->nearest(first.position[k]).distance, 0.97 * first.radius[k]) << k;
     solid += geometry::volume_below(3, first.radius[k], first.position[k][2], vessel.height());
   }
   if (world_.rank() != 0) return;
@@ -150,7 +150,7 @@ TEST_F(PackInMesh, ItsSolidFractionIsToldByTheDistanceFromTheWalls) {
   EXPECT_NEAR(width, 0.001, 1e-12);
   const pack::PackRows pack = rows();
   const auto& bulk = record_.bulk;
-  std::vector<int> room(values.size(), 0), solid(values.size(), 0);
+  std::vector<int> interior(values.size(), 0), solid(values.size(), 0);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u;
   for (int k = 0; k < 60000; ++k) {
@@ -158,7 +158,7 @@ TEST_F(PackInMesh, ItsSolidFractionIsToldByTheDistanceFromTheWalls) {
     const double away = std::min({x[0], size[0] - x[0], x[1], size[1] - x[1], x[2], size[2] - x[2]});
     const auto shell = static_cast<std::size_t>(away / width);
     if (shell >= values.size()) continue;
-    ++room[shell];
+    ++interior[shell];
     for (std::size_t i = 0; i < pack.id.size(); ++i) {
       const Vec3& c = pack.position[i];
       solid[shell] += std::hypot(x[0] - c[0], x[1] - c[1], x[2] - c[2]) < pack.radius[i] ? 1 : 0;
@@ -166,9 +166,9 @@ TEST_F(PackInMesh, ItsSolidFractionIsToldByTheDistanceFromTheWalls) {
   }
   double most = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (room[k] < 100) continue;
-    const double share = static_cast<double>(solid[k]) / room[k];
-    const double error = std::sqrt(std::max(share * (1.0 - share), 0.05) / room[k]);
+    if (interior[k] < 100) continue;
+    const double share = static_cast<double>(solid[k]) / interior[k];
+    const double error = std::sqrt(std::max(share * (1.0 - share), 0.05) / interior[k]);
     EXPECT_NEAR(values[k], share, 4.5 * error) << "shell " << k;
     most = std::max(most, values[k]);
   }

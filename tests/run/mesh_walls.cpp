@@ -18,8 +18,8 @@ using testing::Soup;
 
 constexpr double r = 0.05;
 
-/// A room of 1 x 1 x 1 with a cube in it from 0.4 to 0.6, of many triangles.
-Soup room_with_cube(int n) {
+/// An interior of 1 x 1 x 1 with a cube in it from 0.4 to 0.6, of many triangles.
+Soup box_around_cube(int n) {
   Soup soup = testing::box({0, 0, 0}, {1, 1, 1}, n);
   for (const mesh::Corners& c : testing::box({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6}, n)) soup.push_back(c);
   return soup;
@@ -40,7 +40,7 @@ void expect_force(const input::Input& in, const Vec3& on_wall, const Vec3& away,
 
 TEST(MeshWalls, PushAsHertzSays) {
   const double depth = 1e-3, s = std::sqrt(0.5), t = std::sqrt(1.0 / 3.0);
-  const input::Input in = in_mesh(test::vacuum(3, 1.0, r, 1e-6, 2.0), room_with_cube(4), 1.0);
+  const input::Input in = in_mesh(test::vacuum(3, 1.0, r, 1e-6, 2.0), box_around_cube(4), 1.0);
   expect_force(in, {0.25, 0.25, 0.0}, {0, 0, 1}, depth);     // on the floor, on the corner of eight triangles
   expect_force(in, {0.0, 0.3, 0.7}, {1, 0, 0}, depth);       // beside a wall
   expect_force(in, {0.55, 0.5, 1.0}, {0, 0, -1}, depth);     // below the lid
@@ -163,7 +163,7 @@ TEST(MeshWalls, TheForceOfRoundWallsDoesNotJump) {
     soup.push_back({c[0], c[2], c[1]});
   }
   const input::Input in = in_mesh(test::vacuum(3, 1.0, r, 1e-6, 2.0), soup, 1.0);
-  const mesh::Surface& room = *in.container.mesh;
+  const mesh::Surface& interior = *in.container.mesh;
   Bench bench(comm, in);
   bench.place({0.5, 0.5, 0.1}, r);
   std::mt19937 dice(1);
@@ -173,7 +173,7 @@ TEST(MeshWalls, TheForceOfRoundWallsDoesNotJump) {
   for (const double from : {0.05, 0.3}) {  // at the pipe, at the ball
     Vec3 x{0.5, 0.5, from}, way{}, before{};
     for (int step = 0; step < 30000; ++step) {
-      const mesh::Nearest at = room.nearest(x);
+      const mesh::Nearest at = interior.nearest(x);
       const Vec3 off = mesh::unit(mesh::minus(x, at.place));
       if (step % 3000 == 0) way = {0.1 * any(dice), any(dice), any(dice)};
       const double out = at.distance > r                     ? -1.0
@@ -186,7 +186,7 @@ TEST(MeshWalls, TheForceOfRoundWallsDoesNotJump) {
       if (step > 0) {
         ASSERT_LT(norm(mesh::minus(push, before)), 3.0 * stride / r * std::sqrt(deepest)) << step << ' ' << from;
       }
-      const double overlap = 1.0 - room.nearest(x).distance / r;
+      const double overlap = 1.0 - interior.nearest(x).distance / r;
       ASSERT_NEAR(norm(push), overlap > 0.0 ? std::pow(overlap, 1.5) : 0.0, 1e-9) << step;
       together += static_cast<int>(overlap > 0.0 && std::abs(dot(push, off) / norm(push)) < 1.0 - 1e-6);
       before = push;

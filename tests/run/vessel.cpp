@@ -169,9 +169,9 @@ TEST(CylinderBed, ItsSolidFractionIsThatOfItsSpheresCutByPlanes) {
     const auto below = [&](long double h) { return pi * (r * r * h - h * h * h / 3.0L); };  // above the centre
     solid += below(high) - below(low);
   }
-  const double room = pi * 0.25 * diameter * diameter * (m.record.bulk.high - m.record.bulk.low);
+  const double volume = pi * 0.25 * diameter * diameter * (m.record.bulk.high - m.record.bulk.low);
   EXPECT_GT(m.record.bulk.high, m.record.bulk.low);
-  EXPECT_NEAR(m.record.phi_bulk, static_cast<double>(solid) / room, 1e-9);
+  EXPECT_NEAR(m.record.phi_bulk, static_cast<double>(solid) / volume, 1e-9);
 }
 
 // De Klerk's core: as dense as a bed without walls.

@@ -69,7 +69,7 @@ Cloud::Cloud(const scene::Features& f, const CloudPlan& p) : features(f), plan(p
          testing::box({0.3 * edge, 0.35 * edge, 0.4 * edge}, {0.6 * edge, 0.6 * edge, 0.6 * edge}, 2)) {
       soup.push_back(corners);  // looks outside, and is turned: a hole
     }
-    room = std::make_shared<const mesh::Surface>(soup, "room");
+    interior = std::make_shared<const mesh::Surface>(soup, "interior");
   }
   fill(dice);
   list(dice);
@@ -139,12 +139,12 @@ void Cloud::list(Dice& dice) {
       walls.particle.push_back(i);
       walls.wall.push_back(wall);
     };
-    if (room) {
+    if (interior) {
       mesh::NearFeatures found;
-      room->near({a[0], a[1], a[2]}, r + margin, 0.25 * radius, found);
+      interior->near({a[0], a[1], a[2]}, r + margin, 0.25 * radius, found);
       for (const std::int32_t feature : found.feature) {
         near(0.0, static_cast<neighbor::Wall>(static_cast<std::int32_t>(geometry::most_surfaces) + feature));
-        const mesh::Touch at = room->touch_of(feature, {a[0], a[1], a[2]}, 0.25 * radius);
+        const mesh::Touch at = interior->touch_of(feature, {a[0], a[1], a[2]}, 0.25 * radius);
         walls.facing.push_back({at.distance, {at.normal[0], at.normal[1], at.normal[2]}});
       }
       continue;
@@ -163,7 +163,7 @@ void Cloud::list(Dice& dice) {
 }
 
 void Cloud::make_ring(Dice& dice) {
-  const auto window = static_cast<std::uint64_t>(static_cast<double>(pairs.window) * plan.ring_room);
+  const auto window = static_cast<std::uint64_t>(static_cast<double>(pairs.window) * plan.ring_slack);
   const std::uint64_t slots =
       std::bit_ceil(plan.near_field ? std::max(window, static_cast<std::uint64_t>(plan.owned)) : window);
   const auto each = static_cast<std::uint64_t>(dynamics::accumulators_of(features.layout()));

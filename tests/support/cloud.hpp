@@ -31,9 +31,9 @@ struct CloudPlan {
   LocalIndex ghosts = 40;
   double skin = 0.1;            ///< [r] pairs within R + skin are listed
   LocalIndex window = 1 << 30;  ///< list only pairs of owned with second - first below this
-  double ring_room = 1.0;       ///< slots of the ring, at least this times the window
+  double ring_slack = 1.0;      ///< slots of the ring, at least this times the window
   bool round = false;           ///< round walls stand around, where no axis is periodic
-  bool mesh = false;            ///< in 3D walls are those of a mesh: a room with a cube in it
+  bool mesh = false;            ///< in 3D walls are those of a mesh: an interior with a cube in it
   bool near_field = false;      ///< the ring holds every particle, prefilled
   std::uint64_t seed = 1;
 };
@@ -62,7 +62,7 @@ struct Cloud {
   dynamics::Law law{};
   Vec3 size{};
   std::array<bool, 2> periodic{};
-  std::shared_ptr<const mesh::Surface> room;  // of a mesh
+  std::shared_ptr<const mesh::Surface> interior;  // of a mesh
   std::vector<Line> ring;
   std::int64_t ring_mask = 0;
   double drag = 0.0;
