@@ -91,7 +91,7 @@ std::vector<Parcel> along_the_row(const Comm& comm, std::vector<Parcel> outgoing
   return bundles.take();
 }
 
-std::vector<Parcel> down_the_column(std::vector<Parcel> passing) {
+std::vector<Parcel> down_the_column(const std::vector<Parcel>& passing) {
   std::map<Rank, std::size_t> sizes;
   for_each_parcel(passing, [&](const Label& label, std::span<const std::byte> bytes) {
     sizes[label.to] += sizeof label + bytes.size();
@@ -106,10 +106,10 @@ std::vector<Parcel> down_the_column(std::vector<Parcel> passing) {
 
 std::vector<Parcel> relay(const Comm& comm, std::vector<Parcel> outgoing, Purpose purpose, int fewest) {
   if (comm.size() < fewest) return exchange(comm, std::move(outgoing), purpose);
-  std::vector<Parcel> passing = exchange(comm, along_the_row(comm, std::move(outgoing)), purpose);
-  passing = exchange(comm, down_the_column(std::move(passing)), purpose);
+  std::vector<Parcel> onward = down_the_column(exchange(comm, along_the_row(comm, std::move(outgoing)), purpose));
+  const std::vector<Parcel> arrived = exchange(comm, std::move(onward), purpose);
   std::vector<Parcel> incoming;
-  for_each_parcel(passing, [&](const Label& label, std::span<const std::byte> bytes) {
+  for_each_parcel(arrived, [&](const Label& label, std::span<const std::byte> bytes) {
     incoming.push_back({label.from, {bytes.begin(), bytes.end()}});
   });
   std::ranges::sort(incoming, {}, &Parcel::rank);
