@@ -123,14 +123,25 @@ void insert_and_settle(Bed& bed, Attendant& attendant) {
   comm::agree_on(bed.comm, [&] { report::check_energy(bed.scene, at.layers); });
 }
 
-// What a bed sinks by in the final stage, over a layer's rise: measured (doc/theory.md). What slides creeps, and sinks
-// by that at most; what holds hardly sinks at all, more if it hardens.
-double sinks_by(const scene::Scene& scene) {
+// What a bed of friction without memory sinks by at most in the final stage, over a layer's rise: it creeps. Measured
+// (doc/accuracy.md).
+double creeps_by(const input::Input& in) {
   constexpr double rough = 0.3;
-  const input::Input& in = scene.in;
-  if (scene.features.memory) return scene.settling.youngs_modulus < in.particles.youngs_modulus ? 0.2 : 0.08;
   if (in.dynamics.rotation) return 0.45;
   return in.contact.friction > rough ? 1.1 : 0.6;
+}
+
+// What a bed sinks by in the final stage [m], measured (doc/theory.md). With memory only its newest layers do, more if
+// they harden; and frozen layers give way once they feel the weight of what came after them, by the strain of contacts
+// that overlap as they are going to.
+double sinks_by(const scene::Scene& scene, const pack::Progress& at) {
+  constexpr double hard = 0.05, soft = 0.2, strain_of_overlap = 1.6;
+  const double rise = scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  if (!scene.features.memory) return creeps_by(scene.in) * rise;
+  const double modulus = scene.in.particles.youngs_modulus;
+  const double newest = (scene.settling.youngs_modulus < modulus ? soft : hard) * rise;
+  if (at.moving_from == 0) return newest;
+  return newest + strain_of_overlap * scene::expected_overlap(scene, modulus) * at.height;
 }
 
 // The bed's height after the final stage [m]: as it is if that is over, else less by what it is going to sink. A layer
@@ -138,8 +149,7 @@ double sinks_by(const scene::Scene& scene) {
 double final_height(const scene::Scene& scene, const pack::Progress& at) {
   if (!(scene.relaxation > 0.0) || at.layers.empty() || start::is_taken_over(at.layers.back())) return at.height;
   const bool over = at.relaxations > 0 && at.height_before_relaxation == at.layers.back().height;
-  if (over) return at.height;
-  return at.height - sinks_by(scene) * scene::rise_of_layer(scene, scene::expected_fraction(scene).value);
+  return over ? at.height : at.height - sinks_by(scene, at);
 }
 
 // Collective. Does the bed take another layer?
