@@ -74,6 +74,7 @@ FITTED = [("1m", 1.0, "wall", 1, {}), ("2m", 2.0, "wall", 1, {}), ("loose", 2.0,
           ("two wide", 1.8, "periodic", 2, {})]
 HELD_OUT = [("two apart", 0.8, "periodic", 2, {}), ("two walls", 1.4, "wall", 2, {}), ("six layers", 1.6, "wall", 1, {"layers.maximum": "6"}),
             ("wide", 2.6, "wall", 1, {})]
+FITTED_TITLE = "### Fitted"
 FEATURES = ("particle-step", "listed pair and step", "ghost and step", "slot and rebuild", "particle, once", "rank, once", "rank and step, of two")
 
 
@@ -464,18 +465,24 @@ def parse():
     return options
 
 
+def kept_timing(document):
+    """What the page has of an earlier run."""
+    _, _, rest = document.read_text().partition(f"{FITTED_TITLE}\n")
+    return f"{FITTED_TITLE}\n{rest.partition('<!-- scaling: end -->')[0].rstrip()}"
+
+
 def report(options, runs, complaints, growth):
     text = ["### Counted", "", f"{measuring.made_by('scripts/study/scaling.py')}; counted by the program of {runs['slab', 1][0].git}. Load when it ended: {os.getloadavg()[0]:.1f}.", "",
             *ghost_table(runs), "", *traffic_table(runs), "", *growth_words(growth), "",
             "Checks: " + ("all hold." if not complaints else "; ".join(complaints) + ".")]
     if "timing" not in options.only:
-        text += ["", "Fitted, predicted: not made in this run (`--only counts`). They need a machine without other work: a rank that waits burns CPU time."]
+        text += ["", kept_timing(options.doc)]   # it needs a machine without other work: a rank that waits burns CPU time
     else:
         fitted, held = time_runs(options, FITTED), time_runs(options, HELD_OUT)
         costs = fit(fitted)
         table, worst = fit_table(costs, fitted, held)
         model = model_of(costs, held, runs)
-        text += ["", "### Fitted", "", *table, "",
+        text += ["", FITTED_TITLE, "", f"{measuring.made_by('scripts/study/scaling.py')}.", "", *table, "",
                  f"Largest error: {100 * worst['fitted']:.1f} % of the fitted, {100 * worst['held out']:.1f} % of those held out.", "",
                  "### Predicted", "",
                  f"A sphere: {model['particle_steps']:.3g} particle-steps in {model['steps']} steps, {model['rebuilds']:.0f} rebuilds, {model['pairs']:.2f} listed pairs, "
