@@ -2,10 +2,10 @@
 """Does a pack depend on the time step or on the duration of its layers? The step halved and quartered, the duration doubled: tables in doc/rest.md,
 doc/data/convergence.csv.
 
-usage: scripts/study/convergence.py [--scenes small brick] [--seeds N] [--set KEY=VALUE ...]
+usage: scripts/study/convergence.py [--scenes small reference brick] [--seeds N] [--set KEY=VALUE ...]
 
-small: 950 spheres, periodic, eight layers, ten seeds: 8 minutes of one core. brick: example 5.3, 9000 spheres, four seeds: 40 minutes. Runs are remembered in
-results/convergence. Packs of a scene hold equally many spheres.
+small: 950 spheres, periodic, eight layers, ten seeds: 4 minutes of one core; reference: the same by the preset of that name: 6 minutes; brick: example 5.3, 9000
+spheres, four seeds: 24 minutes. Runs are remembered in results/convergence. Packs of a scene hold equally many spheres.
 """
 import argparse
 import math
@@ -13,12 +13,14 @@ import statistics
 
 from settling import Workshop, measuring
 
-LAW = {"contact.tangential": "mindlin", "fidelity": "paper"}
+LAW = {"contact.tangential": "mindlin"}
 SMALL = {"container.size": "[0.4,0.4,0.33]", "container.boundary": '["periodic","periodic"]', "layers.maximum": "8"}
-SCENES = {"small": (SMALL, 10, "950 spheres, periodic, 8 layers"), "brick": ({"layers.maximum": "12"}, 4, "example 5.3, 12 layers")}
-STEP, DURATION = 1e-4, 1.0   # of the examples [s]
-VARIANTS = {"as it is": {}, "step / 2": {"dynamics.time_step": STEP / 2}, "step / 4": {"dynamics.time_step": STEP / 4},
-            "twice the duration": {"layers.duration": 2.0 * DURATION}}
+# Settings, seeds, words; step and times [s] of a layer and of the final stage: of the examples, and of the preset ("auto": 1.64e-4).
+SCENES = {"small": ({**SMALL, "fidelity": "paper"}, 10, "950 spheres, periodic, 8 layers", 1e-4, {"layers.duration": 1.0}),
+          "reference": ({**SMALL, "fidelity": "reference"}, 10, "the same by `\"reference\"`", 1.6e-4,
+                        {"layers.duration": 1.58, "dynamics.relaxation": 0.79}),
+          "brick": ({"layers.maximum": "12", "fidelity": "paper"}, 4, "example 5.3, 12 layers", 1e-4, {"layers.duration": 1.0})}
+VARIANTS = {"as it is": (1.0, 1.0), "step / 2": (0.5, 1.0), "step / 4": (0.25, 1.0), "twice the duration": (1.0, 2.0)}   # times step, durations
 BOUNDS = {"phi_bulk": 0.001, "coordination": 0.03}
 COLUMNS = ["scene", "variant", "seed", "spheres", "phi_bulk", "coordination", "coordination_bulk", "overlap", "kinetic", "cpu_seconds"]
 
@@ -28,10 +30,11 @@ def rows_of(options):
     base = measuring.bare_scene("paper_5_3", options.results, ["regularisation"])
     more = dict(change.split("=", 1) for change in options.set)
     for scene in options.scenes:
-        changes, seeds, _ = SCENES[scene]
+        changes, seeds, _, step, times = SCENES[scene]
         for seed in range(1, (options.seeds or seeds) + 1):
-            for variant, values in VARIANTS.items():
-                got = workshop.settled("packmpi", base, {**changes, **LAW, **{key: str(value) for key, value in values.items()}, **more}, seed)
+            for variant, (of_step, of_times) in VARIANTS.items():
+                values = {"dynamics.time_step": of_step * step, **{key: of_times * time for key, time in times.items()}}
+                got = workshop.settled("packmpi", base, {**changes, **LAW, **{key: f"{value:g}" for key, value in values.items()}, **more}, seed)
                 row = {"scene": scene, "variant": variant, "seed": seed, **{key: f"{got[key]:.6g}" for key in COLUMNS[3:]}}
                 print(", ".join(str(row[key]) for key in COLUMNS), flush=True)
                 yield row
@@ -46,7 +49,7 @@ def change(rows, variant, key):
 
 def table(rows):
     out = ["| scene | | phi_bulk | Z | mean overlap / r | KE / (m g d), worst | CPU s |", "|---|---|---|---|---|---|---|"]
-    for scene, (_, _, words) in SCENES.items():
+    for scene, (_, _, words, *_) in SCENES.items():
         own = [row for row in rows if row["scene"] == scene]
         for variant in VARIANTS if own else ():
             some = [row for row in own if row["variant"] == variant]
