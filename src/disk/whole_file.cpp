@@ -166,6 +166,10 @@ void write_temporary(const comm::Comm& comm, const std::string& path, const std:
 
 }  // namespace
 
+h5::Slab slab_of(const comm::Comm& comm, std::int64_t mine) {
+  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), static_cast<hsize_t>(mine)};
+}
+
 void write_whole_file(const comm::Comm& comm, const std::string& path, const std::vector<h5::Column>& plan,
                       const std::function<void(hid_t)>& frame, const Pieces& pieces) {
   const h5::Quiet quiet;

@@ -18,6 +18,9 @@ struct Pieces {
   std::function<void(std::int64_t piece)> bring = [](std::int64_t) {};  ///< as it is: all rows are at hand already
 };
 
+/// Collective. Where the `mine` rows of each rank lie in a dataset, rank after rank.
+[[nodiscard]] h5::Slab slab_of(const comm::Comm& comm, std::int64_t mine);
+
 /// Collective. Writes PATH: to PATH.tmp, rows by all ranks, a seal (output/seal.hpp) at the end, fsync'ed, renamed, the
 /// folder fsync'ed. `frame` makes all of the file but the rows of `plan` (their datasets included) and runs on rank 0.
 /// Throws Error(io_failure) on every rank, with the system's reason; then PATH is untouched (or, if it was the last

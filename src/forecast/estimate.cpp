@@ -242,11 +242,12 @@ double settling_bytes(const scene::Scene& scene, double own, double ghosts) {
 }
 
 // What a file takes beside, a piece of it at a time.
-double writing_bytes(const scene::Scene& scene, double own) {
+double writing_bytes(const scene::Scene& scene, std::int64_t particles, int ranks) {
   const double contacts = contacts_of_one[static_cast<std::size_t>(scene.container.dimension - 2)] / 2.0;
   const bool written = scene.features.memory || scene.in.output.contacts;
-  const double piece = std::max(static_cast<double>(pack::rows_at_a_time), own / 16.0);
-  return std::min(own, piece) * (row_bytes + (written ? contact_row_bytes * contacts : 0.0));
+  const double own = static_cast<double>(particles) / ranks;
+  return std::min(own, static_cast<double>(pack::particles_at_a_time(particles, ranks))) *
+         (row_bytes + (written ? contact_row_bytes * contacts : 0.0));
 }
 
 // A row as a run writes it: its numbers have all their digits.
@@ -347,7 +348,7 @@ void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   const double own = static_cast<double>(e.particles.value) / ranks;
   const double settling = settling_bytes(scene, own, e.ghosts);
   e.settling_bytes = std::llround(settling);
-  e.writing_bytes = std::llround(settling + writing_bytes(scene, own));
+  e.writing_bytes = std::llround(settling + writing_bytes(scene, e.particles.value, ranks));
 }
 
 // Of a sample whose density holds under stress.
@@ -398,7 +399,8 @@ std::int64_t memory_a_rank(const scene::Scene& scene, int ranks) {
   report::Estimate e;
   add_counts(scene, scene::expected_fraction(scene), e);
   const double own = static_cast<double>(e.particles.value) / ranks;
-  return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) + writing_bytes(scene, own));
+  return std::llround(settling_bytes(scene, own, ghost_share(scene, ranks)) +
+                      writing_bytes(scene, e.particles.value, ranks));
 }
 
 namespace {

@@ -61,9 +61,7 @@ Counted count_histories(const comm::Comm& comm, const disk::IdBlocks& blocks, co
     ++counts[blocks.owner(row.holder)];
     digests += digest(row, histories.features);
   });
-  const std::int64_t mine = disk::count_incoming(comm, counts);
-  return {.slab = {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)),
-                   static_cast<hsize_t>(mine)},
+  return {.slab = disk::slab_of(comm, disk::count_incoming(comm, counts)),
           .digest = static_cast<std::uint64_t>(comm.sum(static_cast<std::int64_t>(digests)))};  // mod 2^64
 }
 
@@ -169,14 +167,16 @@ void write_frame(hid_t file, const std::vector<disk::h5::Column>& plan, const Ru
 
 }  // namespace
 
+std::int64_t particles_at_a_time(std::int64_t particles, int ranks) {
+  return disk::IdPieces{{particles, ranks}, rows_at_a_time}.length();
+}
+
 void write_checkpoint(const comm::Comm& comm, const std::string& path, std::span<const particles::Store* const> stores,
                       const RunState& state, const HistoriesHere& histories, std::int64_t piece) {
   const Occupation now("the checkpoint on its way to the file");
   const disk::h5::Quiet quiet;
   const disk::IdBlocks blocks{state.progress.count, comm.size()};
-  const GlobalId begin = blocks.begin(comm.rank());
-  const disk::h5::Slab slab{static_cast<hsize_t>(state.progress.count), static_cast<hsize_t>(begin),
-                            static_cast<hsize_t>(blocks.begin(comm.rank() + 1) - begin)};
+  const disk::h5::Slab slab = disk::slab_of(comm, blocks.begin(comm.rank() + 1) - blocks.begin(comm.rank()));
   Digests digests{.particles = digest_of(comm, stores), .contacts = {}};
   Counted contacts;
   if (histories.any()) {

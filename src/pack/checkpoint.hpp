@@ -59,6 +59,8 @@ struct Histories {
 
 /// Rows on their way to the ranks that write them come in up to 16 pieces of at least so many particles of a rank.
 inline constexpr std::int64_t rows_at_a_time = 16384;
+/// How many that is of `particles` on so many ranks; a rank may have fewer. Local.
+[[nodiscard]] std::int64_t particles_at_a_time(std::int64_t particles, int ranks);
 
 /// Collective. Writes PATH whole or not at all: temporary, fsync, rename, fsync of the folder. The bits of the records
 /// are written as they are; rows by id, whatever the ranks; nothing is gathered. The particles are the owned ones of

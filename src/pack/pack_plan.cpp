@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "disk/whole_file.hpp"
 #include "report/fields.hpp"
 #include "scene/mixture.hpp"
 
@@ -52,17 +53,14 @@ void check_complete(const std::vector<ParticleRow>& rows, GlobalId begin, Global
   if (expected < end) fail_ids(total, "is missing", expected);
 }
 
-disk::h5::Slab slab_of(const comm::Comm& comm, std::int64_t mine) {
-  return {static_cast<hsize_t>(comm.sum(mine)), static_cast<hsize_t>(comm.sum_below(mine)), static_cast<hsize_t>(mine)};
-}
-
 /// Collective. Of contacts (null: none), which the writers of their first particles write.
-disk::h5::Slab slab_of(const comm::Comm& comm, const disk::IdBlocks& blocks, const std::vector<ContactRow>* rows) {
+disk::h5::Slab slab_of_contacts(const comm::Comm& comm, const disk::IdBlocks& blocks,
+                                const std::vector<ContactRow>* rows) {
   std::map<Rank, std::int64_t> counts;
   if (rows != nullptr) {
     for (const ContactRow& row : *rows) ++counts[blocks.owner(row.first)];
   }
-  return slab_of(comm, disk::count_incoming(comm, counts));
+  return disk::slab_of(comm, disk::count_incoming(comm, counts));
 }
 
 /// Collective. Those of a piece to the ranks that write them, in the order of the file; null: none.
@@ -214,15 +212,15 @@ PackBlock make_block(const comm::Comm& comm, const PackParts& parts) {
   comm::agree_on(comm, [&] { check_range(*parts.store, total); });
 
   const disk::IdBlocks blocks{total, comm.size()};
-  block.particles = slab_of(comm, blocks.begin(comm.rank() + 1) - blocks.begin(comm.rank()));
+  block.particles = disk::slab_of(comm, blocks.begin(comm.rank() + 1) - blocks.begin(comm.rank()));
   block.has_contacts = parts.contact_rows != nullptr;
   if (block.has_contacts) {
     block.features = parts.features;
-    block.contacts = slab_of(comm, blocks, parts.contact_rows);
-    block.walls = slab_of(comm, blocks, parts.wall_rows);
+    block.contacts = slab_of_contacts(comm, blocks, parts.contact_rows);
+    block.walls = slab_of_contacts(comm, blocks, parts.wall_rows);
   }
   block.maps = parts.maps;
-  if (block.maps != nullptr) block.columns = slab_of(comm, std::ssize(block.maps->top));
+  if (block.maps != nullptr) block.columns = disk::slab_of(comm, std::ssize(block.maps->top));
   return block;
 }
 

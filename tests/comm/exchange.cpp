@@ -59,6 +59,9 @@ void play(const Comm& comm, const Pattern& pattern, int longest_message = 1 << 3
   check(comm, pattern, exchange(comm, outgoing(comm, pattern), Purpose::other, longest_message));
 }
 
+/// On any rank: all end a test together, as one that left alone would be waited for.
+bool has_failed(const Comm& comm) { return comm.max(std::int64_t{::testing::Test::HasFatalFailure()}) != 0; }
+
 /// Through ranks between, on any number of ranks.
 void play_relayed(const Comm& comm, const Pattern& pattern) {
   check(comm, pattern, relay(comm, outgoing(comm, pattern), Purpose::other, 1));
@@ -68,7 +71,7 @@ TEST(Relay, BringsWhatAnExchangeBrings) {
   const Comm comm(MPI_COMM_WORLD);
   for (std::uint64_t round = 0; round < 100; ++round) {
     play_relayed(comm, {round, comm.size(), static_cast<unsigned>(round * 37 % 101), round % 10 == 0 ? 20000U : 64U});
-    if (::testing::Test::HasFatalFailure()) return;
+    if (has_failed(comm)) return;
   }
   play_relayed(comm, {1, comm.size(), 100, 0});
   play_relayed(comm, {2, comm.size(), 0, 0});
@@ -110,7 +113,7 @@ TEST(Exchange, TwoHundredRandomRoundsWithoutAPause) {
   const Comm comm(MPI_COMM_WORLD);
   for (std::uint64_t round = 0; round < 200; ++round) {
     play(comm, {round, comm.size(), static_cast<unsigned>(round * 37 % 101), round % 10 == 0 ? 20000U : 64U});
-    if (::testing::Test::HasFatalFailure()) return;
+    if (has_failed(comm)) return;
   }
 }
 
@@ -120,7 +123,7 @@ TEST(Exchange, LateRanksDoNotMixRounds) {
   for (std::uint64_t round = 0; round < 40; ++round) {
     if (random() % 4 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(random() % 5));
     play(comm, {round, comm.size(), 60, 16});
-    if (::testing::Test::HasFatalFailure()) return;
+    if (has_failed(comm)) return;
   }
 }
 
