@@ -88,8 +88,8 @@ constexpr int pair_constants = 7;
 template <Features F>
 struct Block {
   using M = Memory<F>;
-  // What a block touches has to stay in 32 KB of cache.
-  static constexpr int size = F.rolling ? 32 : (F.memory ? 64 : 128);
+  // What a block touches has to stay in 32 KB of cache. Two of three entries that are taken touch.
+  static constexpr int size = F.rolling ? 64 : (F.memory ? 96 : 128);
   static constexpr int row = size + 8;  // rows a power of two apart would share cache sets
   alignas(64) double in[M::rows][row];
   alignas(64) double again[M::any_twice ? M::rows : 1][row];
@@ -100,37 +100,92 @@ struct Block {
   alignas(64) double stored[M::stored > 0 ? M::stored : 1][row];
   alignas(64) double law[F.mixture ? pair_constants : 1][row];  // of several components: the pair's own constants
   alignas(64) double strength[size];
-  alignas(64) LocalIndex first[size];  // slots of records; filled up to a multiple of 8 with the last pair
-  alignas(64) LocalIndex second[size];
-  alignas(64) LocalIndex first_slot[size];  // slots of accumulators; the fill and ghosts go to the dump
-  alignas(64) LocalIndex second_slot[size];
-  int count;         // pairs
-  int filled;        // count rounded up to 8
-  LocalIndex reach;  // largest second - first pair's first, of owned ends
+  // Of the list's entries that were taken, and of a square of those that count for nothing:
+  alignas(64) LocalIndex first[size + 8];  // slots of records
+  alignas(64) LocalIndex second[size + 8];
+  alignas(64) LocalIndex first_slot[size + 8];  // slots of accumulators; what ghosts would get goes to the dump
+  alignas(64) LocalIndex second_slot[size + 8];
+  alignas(64) std::int64_t apart[size];  // not zero: these do not touch
+  alignas(64) int entry[size];           // which of them the pairs of the block are
+  int taken;                             // how many they are
+  int count;                             // pairs of the block
+  int filled;                            // count rounded up to 8 by entries that count for nothing
+  LocalIndex reach;                      // largest second, of owned ends, less the first of the first entry
 };
 
-/// What must be true of the whole step: the extremes over all contacts and particles, and a sticky trace of NaN.
-struct Tally {
-  Lanes speed{};            // largest |v| of each lane
-  BitLanes broken{};        // nonzero once a state was not finite
-  double pair_force = 0.0;  // largest normal force
-  double wall_force = 0.0;
+/// Periods for the shortest image; an axis with walls has one too large to matter.
+struct Periods {
+  double period[2], half[2];
 };
 
-/// The largest of `count` (a multiple of 4) numbers and `so_far`; NaN if one of them is not finite.
-PACKMPI_INLINE double largest(const double* x, int count, double so_far) {
-  Lanes most = spread(so_far);
-  BitLanes broken = {};
-  for (int p = 0; p < count; p += 4) {
-    const Lanes a = load(x + p);
-    most = a > most ? a : most;
-    broken |= as_bits(a - a);
+PACKMPI_INLINE Periods periods_of(const StepData& data) {
+  Periods p{};
+  for (unsigned axis = 0; axis < 2; ++axis) {
+    p.period[axis] = data.periodic[axis] ? data.size[axis] : 0.0;
+    p.half[axis] = data.periodic[axis] ? 0.5 * data.size[axis] : __builtin_inf();
   }
-  double m = so_far;
-  for (int lane = 0; lane < 4; ++lane) m = most[lane] > m ? most[lane] : m;
-  if ((broken[0] | broken[1] | broken[2] | broken[3]) != 0 || so_far - so_far != 0.0) m = __builtin_nan("");
-  return m;
+  return p;
 }
+
+/// geometry::shortest, with the half period at hand.
+PACKMPI_INLINE double shortest(double d, double period, double half) {
+  d = d > half ? d - period : d;
+  return d < -half ? d + period : d;
+}
+
+/// Of a pair's fields from `field` on, the part of (distance squared) - (sum of the radii squared) that lies in each
+/// lane; larger than zero only if the pair is apart by more than rounding.
+template <Features F>
+PACKMPI_INLINE Row weighed(Row pair, const Periods& periods, int field) {
+  constexpr double safely = 1.0 + 1e-12;
+  if constexpr (F.periodic) {
+    const auto lanes = [&](const double(&of)[2], double other) {
+      return row_with([&](int e) { return field + e < F.dimension - 1 ? of[field + e] : other; });
+    };
+    const Row period = lanes(periods.period, 0.0), half = lanes(periods.half, __builtin_inf());
+    pair = pair > half ? pair - period : pair;
+    pair = pair < -half ? pair + period : pair;
+  }
+  const Row weight =
+      row_with([&](int e) { return field + e < F.dimension ? 1.0 : (field + e == F.dimension ? -safely : 0.0); });
+  return pair * pair * weight;
+}
+
+/// The largest of what it was shown, and a sticky trace of what was not finite.
+struct Largest {
+  Lanes most{};
+  BitLanes broken{};
+
+  /// `count` numbers, a multiple of 8.
+  PACKMPI_INLINE void show(const double* x, int count) {
+    Lanes even = most;
+    Lanes odd = {};
+    BitLanes bits = broken;
+    for (int p = 0; p < count; p += 8) {
+      const Lanes a = load(x + p);
+      const Lanes b = load(x + p + 4);
+      even = a > even ? a : even;
+      odd = b > odd ? b : odd;
+      bits |= as_bits(a - a) | as_bits(b - b);
+    }
+    most = odd > even ? odd : even;
+    broken = bits;
+  }
+  /// NaN if one of them was not finite.
+  [[nodiscard]] PACKMPI_INLINE double value() const {
+    double m = 0.0;
+    for (int lane = 0; lane < 4; ++lane) m = most[lane] > m ? most[lane] : m;
+    return (broken[0] | broken[1] | broken[2] | broken[3]) != 0 ? __builtin_nan("") : m;
+  }
+};
+
+/// What must be true of the whole step: the extremes over all contacts and particles.
+struct Tally {
+  Lanes speed{};       // largest |v| of each lane
+  BitLanes broken{};   // nonzero once a state was not finite
+  Largest pair_force;  // normal forces
+  Largest wall_force;
+};
 
 /// Take up to a block of pairs, as many as the ring holds above `base`, the lowest slot in use.
 template <Features F>
@@ -141,53 +196,98 @@ PACKMPI_INLINE void take(const StepData& data, std::int64_t pair, LocalIndex bas
   const LocalIndex* second = data.second + pair;
   const auto mask = static_cast<LocalIndex>(data.ring_mask);
   const LocalIndex dump = mask + 1;
-  LocalIndex reach = 0;
+  const LocalIndex owned = data.owned;
+  LocalIndex last = first[wanted - 1];
+#pragma GCC ivdep
   for (int p = 0; p < wanted; ++p) {
     const LocalIndex i = first[p];
     const LocalIndex j = second[p];
-    const bool owned = j < data.owned;
-    const LocalIndex ahead = (owned ? j : i) - base;
-    reach = ahead > reach ? ahead : reach;
+    const LocalIndex ghost = (owned - 1 - j) >> 31;  // all bits or none; conditions would become jumps
+    const LocalIndex end = (j & ~ghost) | (i & ghost);
+    last = end > last ? end : last;
     b.first[p] = i;
     b.second[p] = j;
     b.first_slot[p] = i & mask;
-    b.second_slot[p] = owned ? j & mask : dump;
+    b.second_slot[p] = (j & mask & ~ghost) | (dump & ghost);
   }
-  b.count = wanted;
-  b.reach = reach;
-  if (reach > mask) {  // rare: the ring is little larger than the window
-    b.count = 0;
-    const auto last = [&](int p) { return second[p] < data.owned ? second[p] : first[p]; };
-    while (last(b.count) - base <= mask) ++b.count;
+  b.taken = wanted;
+  b.reach = last - first[0];
+  if (last - base > mask) {  // rare: the ring is little larger than the window
+    b.taken = 0;
+    const auto end = [&](int p) { return second[p] < owned ? second[p] : first[p]; };
+    while (end(b.taken) - base <= mask) ++b.taken;
   }
-  b.filled = (b.count + 7) & ~7;
-  for (int p = b.count; p < b.filled; ++p) {
-    b.first[p] = b.first[b.count - 1];
-    b.second[p] = b.second[b.count - 1];
-    b.first_slot[p] = dump;
-    b.second_slot[p] = dump;
+  for (int p = b.taken; p < b.taken + width; ++p) {
+    b.first[p] = first[0];
+    b.second[p] = second[0];
+    b.first_slot[p] = b.second_slot[p] = dump;
   }
 }
 
-/// What `count` contacts have stored, from entry `at` of a list on, into the rows; zero in the fill. The block after
-/// the next is fetched from memory meanwhile.
+/// A record that the next blocks will be the first to touch, seen from a first one of this block.
+template <Features F>
+PACKMPI_INLINE void prefetch(const double* first, const Block<F>& b) {
+  const double* later = first + std::int64_t{b.reach + 80} * Memory<F>::stride;
+  __builtin_prefetch(later);  // it spans two lines
+  __builtin_prefetch(later + 8);
+}
+
+/// Leaves out pairs that do not touch, which would get zeros: in a bed every third that is listed because it lies
+/// within a skin. What is left out is farther apart than rounding makes up for; a pair without a finite distance stays.
+template <Features F>
+PACKMPI_INLINE void sift(const double* records, const Periods& periods, Block<F>& b) {
+  constexpr int stride = Memory<F>::stride;
+  constexpr int radius = F.layout().radius;
+  static_assert(F.layout().position == 0 && radius == F.dimension && radius < 4);
+  for (int p = 0; p < b.taken; p += width) {
+    if (p % 4 == 0) prefetch<F>(records + std::int64_t{b.first[p]} * stride, b);
+    Row square = {};
+    for (int field = 0; field < 4; field += width) {
+      Row pair[width];
+      for (int e = 0; e < width; ++e) {
+        const Row i = load_row(records + std::int64_t{b.first[p + e]} * stride + field);
+        const Row j = load_row(records + std::int64_t{b.second[p + e]} * stride + field);
+        pair[e] = weighed<F>(j + flipped(i, Memory<F>::signs(field, false)), periods, field);
+      }
+      square = square + sums(pair);
+    }
+    store_row(b.apart + p, reinterpret_cast<BitRow>((square > Row{}) & (square < Row{} + __builtin_inf())));
+  }
+  const int taken = b.taken;  // locals: the loop cannot change them
+  const std::int64_t* apart = b.apart;
+  int* entry = b.entry;
+  for (int p = 0; p < taken; ++p) {
+    *entry = p;
+    entry += apart[p] == 0 ? 1 : 0;
+  }
+  const auto touching = static_cast<int>(entry - b.entry);
+  b.count = touching;
+  b.filled = (touching + 7) & ~7;
+  for (int p = touching; p < b.filled; ++p) b.entry[p] = taken;
+}
+
+/// What the contacts have stored, from entry `at` of a list on, into the rows; zero in the fill. The block after the
+/// next is fetched from memory meanwhile.
 template <Features F>
 PACKMPI_INLINE void fetch(const StoredVectors& from, std::int64_t at, Block<F>& b) {
   constexpr int line = 8, ahead = 2 * Block<F>::size;
   for (int c = 0; c < Memory<F>::stored; ++c) {
     const double* source = from.values + c * from.entries + at;
     for (int p = 0; p < Block<F>::size; p += line) __builtin_prefetch(source + ahead + p, 1);
-    for (int p = 0; p < b.count; ++p) b.stored[c][p] = source[p];
+    for (int p = 0; p < b.count; ++p) b.stored[c][p] = source[b.entry[p]];
     for (int p = b.count; p < b.filled; ++p) b.stored[c][p] = 0.0;
   }
 }
 
-/// And back.
+/// And back; zero to entries that are not in the block.
 template <Features F>
 PACKMPI_INLINE void keep(const Block<F>& b, const StoredVectors& to, std::int64_t at) {
   for (int c = 0; c < Memory<F>::stored; ++c) {
     double* target = to.values + c * to.entries + at;
-    for (int p = 0; p < b.count; ++p) target[p] = b.stored[c][p];
+    if (b.count < b.taken) {
+      for (int p = 0; p < b.taken; ++p) target[p] = 0.0;
+    }
+    for (int p = 0; p < b.count; ++p) target[b.entry[p]] = b.stored[c][p];
   }
 }
 
@@ -205,43 +305,55 @@ PACKMPI_INLINE void look_up(const LawConstants* table, Block<F>& b) {
   }
 }
 
+/// Of pairs p .. p + width - 1, whose records are given, the fields of one square, in their first or second reading.
+template <Features F, int field, bool second>
+PACKMPI_INLINE void put_square(double (*rows)[Block<F>::row], int p, const double* const* i, const double* const* j) {
+  const BitRow signs = Memory<F>::signs(field, second);
+  Row pair[width];
+  for (int e = 0; e < width; ++e) pair[e] = load_row(j[e] + field) + flipped(load_row(i[e] + field), signs);
+  transpose(pair);
+  for (int e = 0; e < width; ++e) store_row(rows[field + e] + p, pair[e]);
+}
+
+/// The same from `field` on. No loop: signs are constants of each square.
+template <Features F, int field = 0>
+PACKMPI_INLINE void put_fields(Block<F>& b, int p, const double* const* i, const double* const* j) {
+  put_square<F, field, false>(b.in, p, i, j);
+  if constexpr (Memory<F>::twice(field)) put_square<F, field, true>(b.again, p, i, j);
+  if constexpr (field + width < Memory<F>::rows) put_fields<F, field + width>(b, p, i, j);
+}
+
 /// Stage 1: records of both ends, differences and sums, transposed.
 template <Features F>
 PACKMPI_INLINE void pack(const double* records, Block<F>& b) {
   using M = Memory<F>;
   constexpr int stride = M::stride;
-  const std::int64_t ahead = b.reach + 80;  // records that the next blocks will be the first to touch
   for (int p = 0; p < b.filled; p += width) {
     const double* i[width];
     const double* j[width];
     for (int e = 0; e < width; ++e) {
-      i[e] = records + std::int64_t{b.first[p + e]} * stride;
-      j[e] = records + std::int64_t{b.second[p + e]} * stride;
+      const int entry = b.entry[p + e];
+      i[e] = records + std::int64_t{b.first[entry]} * stride;
+      j[e] = records + std::int64_t{b.second[entry]} * stride;
     }
-    if (p % 4 == 0) {
-      __builtin_prefetch(i[0] + ahead * stride);  // a record spans two lines
-      __builtin_prefetch(i[0] + ahead * stride + 8);
-    }
-    for (int field = 0; field < M::rows; field += width) {
-      for (const bool second : {false, true}) {
-        if (second && !M::twice(field)) continue;
-        const BitRow signs = M::signs(field, second);
-        Row pair[width];
-        for (int e = 0; e < width; ++e) pair[e] = load_row(j[e] + field) + flipped(load_row(i[e] + field), signs);
-        transpose(pair);
-        for (int e = 0; e < width; ++e) store_row((second ? b.again : b.in)[field + e] + p, pair[e]);
-      }
-    }
+    put_fields<F>(b, p, i, j);
   }
 }
 
 /// Stage 3: integers back to one vector a pair, added to the accumulators of the first, and of the second what is the
-/// same, negated or its own.
+/// same, negated or its own. What ghosts and the fill would get goes to the dump.
 template <Features F>
-PACKMPI_INLINE void scatter(std::int64_t* ring, Block<F>& b) {
+PACKMPI_INLINE void scatter(const StepData& data, Block<F>& b) {
   using M = Memory<F>;
   constexpr int accumulators = M::accumulators;
   for (int p = 0; p < b.filled; p += width) {
+    std::int64_t* i[width];
+    std::int64_t* j[width];
+    for (int e = 0; e < width; ++e) {
+      const int entry = b.entry[p + e];
+      i[e] = data.ring + std::int64_t{b.first_slot[entry]} * accumulators;
+      j[e] = data.ring + std::int64_t{b.second_slot[entry]} * accumulators;
+    }
     for (int a = 0; a < accumulators; a += width) {
       const BitRow flip = row_of([&](int e) { return M::minus(a + e); });
       BitRow given[width];
@@ -255,10 +367,8 @@ PACKMPI_INLINE void scatter(std::int64_t* ring, Block<F>& b) {
       }
       transpose(given);
       for (int e = 0; e < width; ++e) {
-        std::int64_t* i = ring + std::int64_t{b.first_slot[p + e]} * accumulators + a;
-        std::int64_t* j = ring + std::int64_t{b.second_slot[p + e]} * accumulators + a;
-        store_row(i, load_row(i) + given[e]);
-        store_row(j, load_row(j) + (((M::any_own ? taken[e] : given[e]) ^ flip) - flip));
+        store_row(i[e] + a, load_row(i[e] + a) + given[e]);
+        store_row(j[e] + a, load_row(j[e] + a) + (((M::any_own ? taken[e] : given[e]) ^ flip) - flip));
       }
     }
   }

@@ -17,7 +17,8 @@ struct Stepper {
   Motion motion = motion_of<F>(data);
   double scale = 1.0 / data.force_quantum;
   Tally tally{};
-  Block<F> block;  // 30 KB, on the stack
+  Block<F> block;                                     // 30 KB, on the stack
+  static constexpr LocalIndex finished_at_once = 64;  // few walls would not fill a block
   LocalIndex done;
   std::int64_t walls_done = 0;
 
@@ -40,18 +41,24 @@ struct Stepper {
   }
 
   PACKMPI_INLINE void run() {
-    for (std::int64_t p = 0;; p += block.count) {
-      finish(p < data.pairs ? data.first[p] : data.end);
-      if (p >= data.pairs) break;
+    for (std::int64_t p = 0; p < data.pairs; p += block.taken) {
+      const LocalIndex next = data.first[p];
+      if (next - done >= finished_at_once) finish(next);
       take<F>(data, p, done, block);
+      if (block.taken < block.size && done < next) {  // cut short, or the last one
+        finish(next);
+        take<F>(data, p, done, block);
+      }
+      sift<F>(data.records, periods, block);
       fetch<F>(data.stored_pairs, p, block);
       pack<F>(data.records, block);
       look_up<F>(data.law.pair_table, block);
       resolve_pairs<F>(block, pair, periods, scale);
-      tally.pair_force = largest(block.strength, block.filled, tally.pair_force);
-      scatter<F>(data.ring, block);
+      tally.pair_force.show(block.strength, block.filled);
+      scatter<F>(data, block);
       keep<F>(block, data.stored_pairs, p);
     }
+    finish(data.end);
     std::int64_t* dump = data.ring + (data.ring_mask + 1) * Memory<F>::accumulators;
     for (int a = 0; a < Memory<F>::accumulators; ++a) dump[a] = 0;
   }
@@ -65,9 +72,11 @@ struct Stepper {
     const auto holds = [&](const LawConstants& c, double force) {
       return force * (1.0 + c.friction + c.rolling_friction + c.twisting_friction) <= limit;  // false for NaN
     };
-    const bool in_range = holds(data.law.pair, tally.pair_force) && holds(data.law.wall, tally.wall_force);
-    const double both = tally.pair_force + tally.wall_force;
-    const double most = tally.pair_force < tally.wall_force ? tally.wall_force : tally.pair_force;
+    const double pair_force = tally.pair_force.value();
+    const double wall_force = tally.wall_force.value();
+    const bool in_range = holds(data.law.pair, pair_force) && holds(data.law.wall, wall_force);
+    const double both = pair_force + wall_force;
+    const double most = pair_force < wall_force ? wall_force : pair_force;
     const double force = both - both == 0.0 ? most : __builtin_nan("");
     return {broken ? __builtin_nan("") : __builtin_sqrt(square), force, in_range};
   }

@@ -72,6 +72,15 @@ PACKMPI_INLINE BitRow row_of(const Number& of) {
 #endif
 }
 
+template <class Number>
+PACKMPI_INLINE Row row_with(const Number& of) {
+#ifdef __AVX__
+  return Row{of(0), of(1), of(2), of(3)};
+#else
+  return Row{of(0), of(1)};
+#endif
+}
+
 /// Rows become columns.
 template <class V>
 PACKMPI_INLINE void transpose(V (&row)[width]) {
@@ -88,6 +97,19 @@ PACKMPI_INLINE void transpose(V (&row)[width]) {
   const V even = __builtin_shufflevector(row[0], row[1], 0, 2);
   row[1] = __builtin_shufflevector(row[0], row[1], 1, 3);
   row[0] = even;
+#endif
+}
+
+/// The sum of each row's lanes, in the lane of its number.
+PACKMPI_INLINE Row sums(const Row (&row)[width]) {
+#ifdef __AVX__
+  const Row first =
+      __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6) + __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+  const Row last =
+      __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6) + __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+  return __builtin_shufflevector(first, last, 0, 1, 4, 5) + __builtin_shufflevector(first, last, 2, 3, 6, 7);
+#else
+  return __builtin_shufflevector(row[0], row[1], 0, 2) + __builtin_shufflevector(row[0], row[1], 1, 3);
 #endif
 }
 

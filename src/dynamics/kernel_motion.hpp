@@ -63,16 +63,17 @@ PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double s
   using M = Memory<F>;
   while (from < to) {
     const int count = to - from < b.size ? static_cast<int>(to - from) : b.size;
-    b.count = count;
+    b.taken = b.count = count;
     b.filled = (count + 7) & ~7;
     for (int p = 0; p < b.filled; ++p) {
+      b.entry[p] = p;
       put_wall<F>(data, b, p, from + (p < count ? p : count - 1));
     }
     look_up<F>(data.law.wall_table, b);
     fetch<F>(data.stored_walls, from, b);
     resolve_walls<F>(b, c, scale);
     keep<F>(b, data.stored_walls, from);
-    tally.wall_force = largest(b.strength, b.filled, tally.wall_force);
+    tally.wall_force.show(b.strength, b.filled);
     for (int p = 0; p < count; ++p) {
       std::int64_t* sum = data.ring + (data.wall_particle[from + p] & data.ring_mask) * M::accumulators;
       for (int a = 0; a < M::accumulators; ++a) {

@@ -4,26 +4,6 @@
 
 namespace packmpi::dynamics::PACKMPI_KERNEL {
 
-/// Periods for the shortest image; an axis with walls has one too large to matter.
-struct Periods {
-  double period[2], half[2];
-};
-
-PACKMPI_INLINE Periods periods_of(const StepData& data) {
-  Periods p{};
-  for (unsigned axis = 0; axis < 2; ++axis) {
-    p.period[axis] = data.periodic[axis] ? data.size[axis] : 0.0;
-    p.half[axis] = data.periodic[axis] ? 0.5 * data.size[axis] : __builtin_inf();
-  }
-  return p;
-}
-
-/// geometry::shortest, with the half period at hand.
-PACKMPI_INLINE double shortest(double d, double period, double half) {
-  d = d > half ? d - period : d;
-  return d < -half ? d + period : d;
-}
-
 /// 1/r of both ends, their mean, and half of second - first [1/m].
 struct Curvatures {
   double first, second, mean, half;
