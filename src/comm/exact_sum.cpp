@@ -1,4 +1,6 @@
 // Sums of doubles whose bits depend on no order: integers are added, and integers commute.
+#include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -17,21 +19,33 @@ double magnitude(std::span<const double> terms) {
   double largest = 0.0;
   for (const double term : terms) {
     if (!std::isfinite(term)) return std::numeric_limits<double>::quiet_NaN();
-    largest = std::fmax(largest, std::fabs(term));
+    largest = std::max(largest, std::fabs(term));
   }
   return largest;
 }
 
+/// term = mantissa * 2^exponent, |mantissa| < 2^53.
+struct Parts {
+  std::int64_t mantissa;
+  int exponent;
+};
+Parts parts_of(double term) {  // std::frexp is a call, and a row of the step log sums some ten numbers a particle
+  const auto bits = std::bit_cast<std::uint64_t>(term);
+  const auto biased = static_cast<int>(bits >> 52U & 0x7ffU);
+  const auto fraction = static_cast<std::int64_t>(bits & 0xfffffffffffffU);
+  const std::int64_t mantissa = biased == 0 ? fraction : fraction | std::int64_t{1} << 52U;
+  return {std::signbit(term) ? -mantissa : mantissa, std::max(biased, 1) - 1075};
+}
+
 /// term / 2^(exponent - 96), rounded to the nearest integer, halves away from zero; |term| < 2^exponent.
 Int128 fixed(double term, int exponent) {
-  int own = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::frexp(term, &own) * 0x1p53);  // term = mantissa 2^(own - 53)
-  const int shift = own - 53 - (exponent - fraction_bits);
-  if (shift >= 0) return Int128{mantissa} * (Int128{1} << shift);
+  const Parts parts = parts_of(term);
+  const int shift = parts.exponent - (exponent - fraction_bits);
+  if (shift >= 0) return Int128{parts.mantissa} * (Int128{1} << shift);
   if (shift < -54) return 0;
   const std::int64_t half = std::int64_t{1} << (-shift - 1);
-  const std::int64_t rounded = (std::abs(mantissa) + half) >> -shift;
-  return mantissa < 0 ? -rounded : rounded;
+  const std::int64_t rounded = (std::abs(parts.mantissa) + half) >> -shift;
+  return parts.mantissa < 0 ? -rounded : rounded;
 }
 
 Int128 local_sum(std::span<const double> terms, double largest) {

@@ -22,19 +22,64 @@ SpringDisplacements displacements(int dimension, const Vector& n, const plain::S
 }
 
 template <Features F>
-ContactEffect resolve(const plain::Constants& c, Meeting at, const StoredView& stored, std::int64_t entry) {
+plain::Springs springs(const StoredView& stored, std::int64_t entry) {
   double values[scene::most_stored_doubles] = {};
   for (int k = 0; stored.values != nullptr && k < scene::stored_doubles(F); ++k) {
     values[k] = stored.values[k * stored.entries + entry];
   }
-  at.springs = plain::springs_of<F>(values);
+  return plain::springs_of<F>(values);
+}
+
+/// Of springs that lie in the plane of now.
+double energy_of(double shear_stiffness, double reduced_radius, double overlap, const plain::Springs& x) {
+  const double stiffness = shear_stiffness * plain::root(reduced_radius * overlap);
+  return 0.5 * stiffness * (dot(x.slip, x.slip) + dot(x.roll, x.roll) + x.twist * x.twist);
+}
+
+template <Features F>
+ContactEffect resolve(const plain::Constants& c, Meeting at, const StoredView& stored, std::int64_t entry) {
+  at.springs = springs<F>(stored, entry);
   const plain::Force f = F.dimension == 3 ? plain::contact_3d<F>(c, at) : plain::contact_2d<F>(c, at);
-  const double stiffness = c.shear_stiffness * plain::root(at.reduced.radius * at.overlap);
-  const plain::Springs& x = f.springs;  // in a step of no duration nothing but their planes has changed
-  const double energy = 0.5 * stiffness * (dot(x.slip, x.slip) + dot(x.roll, x.roll) + x.twist * x.twist);
   ContactEffect effect{array_of(f.force), array_of(f.torque), f.strength, 0.0, {}};
-  if (F.memory) effect.spring_energy = energy, effect.springs = displacements(F.dimension, at.n, x);
+  if (F.memory) {  // in a step of no duration nothing but the springs' planes has changed
+    effect.spring_energy = energy_of(c.shear_stiffness, at.reduced.radius, at.overlap, f.springs);
+    effect.springs = displacements(F.dimension, at.n, f.springs);
+  }
   return effect;
+}
+
+/// What the law does to springs in a step of no duration.
+template <Features F>
+double energy(double shear_stiffness, double reduced_radius, const plain::Touch& at, const StoredView& stored,
+              std::int64_t entry) {
+  const double overlap = at.gap < 0.0 ? 0.0 : at.gap;
+  const plain::SpringState now = {0.0, 0.0, 0.0, overlap, overlap};
+  plain::Springs x = springs<F>(stored, entry);
+  if constexpr (F.dimension == 3) {
+    x.slip = turned(now, at.normal, x.slip);
+    x.roll = turned(now, at.normal, x.roll);
+  } else {
+    x.slip.x = kept_part(now) * x.slip.x;
+    x.roll.x = kept_part(now) * x.roll.x;
+  }
+  x.twist = kept_part(now) * x.twist;
+  return energy_of(shear_stiffness, reduced_radius, overlap, x);
+}
+
+template <int Dimension>
+double energy(const Features& f, const LawConstants& kind, double reduced_radius, const plain::Touch& at,
+              const StoredView& stored, std::int64_t entry) {
+  constexpr Features memory{.dimension = Dimension, .memory = true};
+  constexpr Features rolling{.dimension = Dimension, .memory = true, .rolling = true};
+  return f.rolling ? energy<rolling>(kind.shear_stiffness, reduced_radius, at, stored, entry)
+                   : energy<memory>(kind.shear_stiffness, reduced_radius, at, stored, entry);
+}
+
+double energy(const scene::Scene& scene, const LawConstants& kind, double reduced_radius, const plain::Touch& at,
+              const StoredView& stored, std::int64_t entry) {
+  if (!scene.features.memory) return 0.0;
+  return scene.container.dimension == 3 ? energy<3>(scene.features, kind, reduced_radius, at, stored, entry)
+                                        : energy<2>(scene.features, kind, reduced_radius, at, stored, entry);
 }
 
 template <int Dimension>
@@ -53,31 +98,52 @@ ContactEffect resolve(const scene::Scene& scene, const Law& law, const LawConsta
                                         : resolve<2>(scene.features, c, at, stored, entry);
 }
 
+plain::Touch touch_of_pair(const scene::Scene& scene, const particles::Store& store, LocalIndex i, LocalIndex j) {
+  const Vec3 d = geometry::separation(scene.container, store.position(i), store.position(j));
+  const double radii = store.radius(j) + store.radius(i);
+  return plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
+}
+
+/// Of a pair; of several components with their codes added up.
+struct Pairing {
+  plain::Reduced reduced;
+  double code;
+};
+Pairing pairing(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i, LocalIndex j) {
+  const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
+  if (!scene.features.mixture) {
+    return {plain::reduced_of_pair(law.mass_factor, k, store.radius(j) + store.radius(i)), 0.0};
+  }
+  const particles::Substance a = store.substance(i), b = store.substance(j);
+  return {plain::reduced_of_mixed(k, a.inverse_mass + b.inverse_mass), a.code + b.code};
+}
+
 }  // namespace
 
 ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            LocalIndex j, const StoredView& stored, std::int64_t entry) {
-  const Vec3 d = geometry::separation(scene.container, store.position(i), store.position(j));
-  const double radii = store.radius(j) + store.radius(i);
-  const plain::Touch touch = plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
-  const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
+  const plain::Touch touch = touch_of_pair(scene, store, i, j);
+  const Pairing pair = pairing(scene, law, store, i, j);
   const Vec3 vi = store.velocity(i), vj = store.velocity(j), wi = store.spin(i), wj = store.spin(j);
-  const bool mixture = scene.features.mixture;
-  const particles::Substance a = mixture ? store.substance(i) : particles::Substance{};
-  const particles::Substance b = mixture ? store.substance(j) : particles::Substance{};
-  Meeting at{mixture ? plain::reduced_of_mixed(k, a.inverse_mass + b.inverse_mass)
-                     : plain::reduced_of_pair(law.mass_factor, k, radii),
-             touch.normal,
-             touch.bend,
-             touch.gap < 0.0 ? 0.0 : touch.gap,
-             {},
-             {},
-             {},
-             {}};
+  Meeting at{pair.reduced, touch.normal, touch.bend, touch.gap < 0.0 ? 0.0 : touch.gap, {}, {}, {}, {}};
   at.v = {vj[0] - vi[0], vj[1] - vi[1], vj[2] - vi[2]};
   at.s = sum(scaled(store.radius(j), vector_of(wj)), store.radius(i), vector_of(wi));
   at.spin = {wj[0] - wi[0], wj[1] - wi[1], wj[2] - wi[2]};
-  return resolve(scene, law, law.of_pair(a.code + b.code), at, stored, entry);
+  return resolve(scene, law, law.of_pair(pair.code), at, stored, entry);
+}
+
+double pair_spring_energy(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                          LocalIndex j, const StoredView& stored, std::int64_t entry) {
+  const Pairing pair = pairing(scene, law, store, i, j);
+  return energy(scene, law.of_pair(pair.code), pair.reduced.radius, touch_of_pair(scene, store, i, j), stored, entry);
+}
+
+double wall_spring_energy(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                          const geometry::Facing& wall, const StoredView& stored, std::int64_t entry) {
+  const double r = store.radius(i);
+  const plain::Touch touch{vector_of(wall.normal), 0.0, r - wall.distance};
+  const double code = scene.features.mixture ? store.substance(i).code : 0.0;
+  return energy(scene, law.of_wall(code), r, touch, stored, entry);
 }
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,

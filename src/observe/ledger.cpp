@@ -59,7 +59,7 @@ void add_pairs(const particles::Store& store, const scene::Scene& scene, const d
     const double rj = store.radius(j);
     terms.push_back(elastic_energy(law.of_pair(scene::pair_code(store, i, j)), ri * rj / (ri + rj), overlap));
     if (!scene.features.memory) return;
-    terms.push_back(dynamics::pair_contact(scene, law, store, i, j, stored, entry).spring_energy);
+    terms.push_back(dynamics::pair_spring_energy(scene, law, store, i, j, stored, entry));
   };
   each_touching(store, scene.container, neighborhood.pairs(), add);
 }
@@ -71,7 +71,7 @@ void add_walls(const particles::Store& store, const scene::Scene& scene, const d
     const double overlap = store.radius(i) - at.distance;
     terms.push_back(elastic_energy(law.of_wall(scene::wall_code(store, i)), store.radius(i), overlap));
     if (!scene.features.memory) return;
-    terms.push_back(dynamics::wall_contact(scene, law, store, i, at, stored, entry).spring_energy);
+    terms.push_back(dynamics::wall_spring_energy(scene, law, store, i, at, stored, entry));
   };
   each_touching_wall(store, scene.container, neighborhood.walls(), add);
 }

@@ -41,16 +41,24 @@ double spring_energy(const Bed& bed) {
   const auto& pairs = bed.neighborhood.pairs();
   const auto& walls = bed.neighborhood.walls();
   double sum = 0.0;
+  const dynamics::Law& law = bed.stepper.law();
+  const dynamics::StoredView of_pairs = dynamics::stored_pairs(bed.neighborhood);
+  const dynamics::StoredView of_walls = dynamics::stored_walls(bed.neighborhood);
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const double share = pairs.second[p] < bed.store.owned() ? 1.0 : 0.5;  // of a border both owners have it
-    sum += share * dynamics::pair_contact(bed.scene, bed.stepper.law(), bed.store, pairs.first[p], pairs.second[p],
-                                          dynamics::stored_pairs(bed.neighborhood), static_cast<std::int64_t>(p))
-                       .spring_energy;
+    const LocalIndex i = pairs.first[p], j = pairs.second[p];
+    const auto entry = static_cast<std::int64_t>(p);
+    const double energy = dynamics::pair_contact(bed.scene, law, bed.store, i, j, of_pairs, entry).spring_energy;
+    EXPECT_EQ(dynamics::pair_spring_energy(bed.scene, law, bed.store, i, j, of_pairs, entry), energy);
+    sum += share * energy;
   }
   for (std::size_t w = 0; w < walls.particle.size(); ++w) {
-    sum += dynamics::wall_contact(bed.scene, bed.stepper.law(), bed.store, walls.particle[w], walls.wall[w],
-                                  dynamics::stored_walls(bed.neighborhood), static_cast<std::int64_t>(w))
-               .spring_energy;
+    const LocalIndex i = walls.particle[w];
+    const auto entry = static_cast<std::int64_t>(w);
+    const geometry::Facing at = neighbor::facing_of(bed.scene.container, walls, w, bed.store.position(i));
+    const double energy = dynamics::wall_contact(bed.scene, law, bed.store, i, at, of_walls, entry).spring_energy;
+    EXPECT_EQ(dynamics::wall_spring_energy(bed.scene, law, bed.store, i, at, of_walls, entry), energy);
+    sum += energy;
   }
   return comm::exact_sum(bed.comm, std::array{sum});
 }
