@@ -1,5 +1,5 @@
-/// A block of pairs in three stages: records to structure-of-arrays, the law over all, integers back to the
-/// accumulators.
+/// A block of pairs: those that touch, in three stages. Records to structure-of-arrays, the law over all, integers back
+/// to the accumulators.
 #pragma once
 #include "dynamics/kernel.hpp"
 #include "dynamics/kernel_contact.hpp"

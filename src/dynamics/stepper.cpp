@@ -100,7 +100,8 @@ Inspected Stepper::inspected(const particles::Store& store, const neighbor::Neig
 void Stepper::advance_one(particles::Store& store, neighbor::Neighborhood& neighborhood) {
   if (implicit_) {
     neighborhood.arrive(store);
-    last_ = implicit_->step(law_, store, neighborhood, stage_.time_step);
+    const Implicit::Outcome done = implicit_->step(law_, store, neighborhood, stage_.time_step);
+    last_ = {.max_speed = done.max_speed, .max_force = done.max_force};
     return;
   }
   fit_ring(store, neighborhood);

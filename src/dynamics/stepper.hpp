@@ -5,8 +5,8 @@
 
 #include "comm/comm.hpp"
 #include "dynamics/guard.hpp"
-#include "dynamics/implicit.hpp"
 #include "dynamics/kernel.hpp"
+#include "implicit/implicit.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"

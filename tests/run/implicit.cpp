@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "dynamics/implicit_system.hpp"
+#include "implicit/system.hpp"
 #include "support/placed_bed.hpp"
 
 namespace packmpi::run {

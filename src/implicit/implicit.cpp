@@ -1,4 +1,4 @@
-#include "dynamics/implicit.hpp"
+#include "implicit/implicit.hpp"
 
 #include <fmt/core.h>
 #include <petscsnes.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/log.hpp"
-#include "dynamics/implicit_system.hpp"
-#include "dynamics/petsc_check.hpp"
+#include "implicit/petsc_check.hpp"
+#include "implicit/system.hpp"
 
 namespace packmpi::dynamics {
 namespace {
@@ -118,18 +118,18 @@ struct Implicit::Solver {
 Implicit::Implicit(const comm::Comm& comm, const scene::Scene& scene) : comm_(&comm), scene_(&scene) {}
 Implicit::~Implicit() = default;
 
-StepReport Implicit::step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood,
-                          double time_step) {
-  StepReport report;
+Implicit::Outcome Implicit::step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood,
+                                 double time_step) {
+  Outcome outcome;
   double left = 1.0;   // of the step
   double share = 1.0;  // of it tried at once: 2^-halvings
   int halvings = 0;
   while (left > 0.0) {
-    StepReport part;
+    Outcome part;
     if (try_step(law, store, neighborhood, share * time_step, part)) {
       left -= share;
-      report.max_speed = std::max(report.max_speed, part.max_speed);
-      report.max_force = part.max_force;
+      outcome.max_speed = std::max(outcome.max_speed, part.max_speed);
+      outcome.max_force = part.max_force;
       continue;
     }
     if (++halvings > most_halvings) {
@@ -144,12 +144,12 @@ StepReport Implicit::step(const Law& law, particles::Store& store, neighbor::Nei
       log::warn(fmt::format("an implicit step was not solved; goes on with {:g} s", share * time_step));
     }
   }
-  return report;
+  return outcome;
 }
 
 // False if the step must be shorter; the store is then as it was.
 bool Implicit::try_step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood, double time_step,
-                        StepReport& report) {
+                        Outcome& outcome) {
   const double room = 0.5 * scene_->skin;
   if (neighborhood.rebuilds() != rebuild_) make_solver(store, neighborhood);
   const double scale = std::max(scene_->in.jamming.gravity * time_step, 1e-9);
@@ -162,13 +162,13 @@ bool Implicit::try_step(const Law& law, particles::Store& store, neighbor::Neigh
     solver_->system.restore();
     if (solved && drift_ > 0.0) {  // fresh lists reach farther
       neighborhood.rebuild(store);
-      return try_step(law, store, neighborhood, time_step, report);
+      return try_step(law, store, neighborhood, time_step, outcome);
     }
     return false;
   }
   drift_ += moved;
-  report.max_speed = speed;
-  report.max_force = solver_->system.largest_force();
+  outcome.max_speed = speed;
+  outcome.max_force = solver_->system.largest_force();
   solver_->system.accept();
   return true;
 }

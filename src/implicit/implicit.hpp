@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "comm/comm.hpp"
-#include "dynamics/kernel.hpp"
+#include "law/law.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
@@ -19,10 +19,16 @@ class Implicit {
   Implicit(const comm::Comm& comm, const scene::Scene& scene);
   ~Implicit();
 
+  /// What a step tells.
+  struct Outcome {
+    double max_speed = 0.0;  ///< [m/s]
+    double max_force = 0.0;  ///< [N] the largest normal force of a contact
+  };
+
   /// Collective. One step of `time_step` [s]; lists and ghosts belong to the positions on entry, ghosts on return (call
   /// Neighborhood::follow() next). A step in which Newton's method fails, or a particle moves beyond the lists, is
   /// halved, up to most_halvings times, and the log says so. Throws Error(numerical_failure) on all ranks beyond that.
-  StepReport step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood, double time_step);
+  Outcome step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood, double time_step);
 
   static constexpr int most_halvings = 12;
 
@@ -38,7 +44,7 @@ class Implicit {
  private:
   struct Solver;  // SNES, its vectors and matrix, for the present lists
   [[nodiscard]] bool try_step(const Law& law, particles::Store& store, neighbor::Neighborhood& neighborhood,
-                              double time_step, StepReport& report);
+                              double time_step, Outcome& outcome);
   void make_solver(particles::Store& store, neighbor::Neighborhood& neighborhood);
 
   const comm::Comm* comm_;

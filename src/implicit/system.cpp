@@ -1,12 +1,12 @@
-#include "dynamics/implicit_system.hpp"
+#include "implicit/system.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/AutoDiff>  // after Eigen/Core: it does not include it itself
 
-#include "dynamics/implicit_contacts.hpp"
-#include "dynamics/petsc_check.hpp"
+#include "implicit/contacts.hpp"
+#include "implicit/petsc_check.hpp"
 
 namespace packmpi::dynamics {
 namespace {

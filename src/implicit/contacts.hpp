@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "dynamics/smooth_contact.hpp"
+#include "implicit/smooth_contact.hpp"
 #include "neighbor/lists.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"

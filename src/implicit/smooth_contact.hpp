@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "dynamics/law.hpp"
+#include "law/law.hpp"
 
 namespace packmpi::dynamics {
 

@@ -1,4 +1,4 @@
-#include "dynamics/implicit_contacts.hpp"
+#include "implicit/contacts.hpp"
 
 #include "geometry/container.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
-#include "dynamics/law.hpp"
+#include "law/law.hpp"
 #include "neighbor/neighborhood.hpp"
 #include "particles/store.hpp"
 #include "scene/scene.hpp"
