@@ -1,5 +1,5 @@
 // step_bench [particles = 107000] [runs = 9]: the step kernel alone on a heap like a settled bed, particle-steps a
-// second. A body-centred lattice with gaps has the neighbours of a real bed: 3.4 listed pairs a particle, three of four
+// second. A body-centred lattice with gaps has the neighbours of a real bed: 3.2 listed pairs a particle, half of them
 // touching.
 #include <fmt/core.h>
 
