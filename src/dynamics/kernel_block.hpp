@@ -234,6 +234,7 @@ PACKMPI_INLINE void prefetch(const double* first, const Block<F>& b) {
 
 /// Leaves out pairs that do not touch, which would get zeros: in a bed every third that is listed because it lies
 /// within a skin. What is left out is farther apart than rounding makes up for; a pair without a finite distance stays.
+/// A law that acts at a distance has to reach as far here.
 template <Features F>
 PACKMPI_INLINE void sift(const double* records, const Periods& periods, Block<F>& b) {
   constexpr int stride = Memory<F>::stride;
