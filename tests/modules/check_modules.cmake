@@ -6,13 +6,13 @@ file(STRINGS ${ROOT}/src/modules.txt modules REGEX "^[a-z]")
 
 # A third-party header, as it stands between the include's brackets, and the modules that may include it.
 set(libraries
-  "petsc.*[.]h=comm scene neighbor observe dynamics"
+  "petsc.*[.]h=comm scene neighbor observe implicit"
   "metis[.]h=scene"
   "hdf5.*[.]h|H5.*[.]h=disk pack"
   "toml[+][+]/.*=document"
   "CLI/.*=cli"
   "Random123/.*=base"
-  "Eigen/.*|unsupported/Eigen/.*=geometry dynamics"
+  "Eigen/.*|unsupported/Eigen/.*=geometry implicit"
   "voro[+][+]/.*=observe"
   "boost/.*=report"
   "nlohmann/.*=base report pack run library cli"
