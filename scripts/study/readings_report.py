@@ -130,6 +130,9 @@ class Reading:
         return f"{min(counts):.0f} to {max(counts):.0f}" if counts else ""
 
 
+PROGRAMS = ("packmpi", "", "i")  # whose packs count, if there are of several: packmpi, readings.cpp, the independent program
+
+
 def rows_of(data):
     """Packs of readings.cpp; of packmpi itself, under its own reading, instead; of the independent program, beside."""
     rows = [{**row, "program": ""} for row in tables.read(data / "readings.csv")]
@@ -148,8 +151,9 @@ def readings_of(rows, paper):
                 for row in rows:
                     if (row["way"], row["stop"]) == (way.name, stop) and row.get(volume):
                         packs.setdefault((row["example"], row["rotation"]), []).append(row)
-                for column, all_packs in packs.items():   # packmpi's are ten
-                    packs[column] = [row for row in all_packs if row["program"] == "packmpi"] or all_packs
+                for column, all_packs in packs.items():   # of one program: packmpi's are ten, the independent one's two
+                    kept = min((row["program"] for row in all_packs), key=PROGRAMS.index)
+                    packs[column] = [row for row in all_packs if row["program"] == kept]
                 bounds = {(row["example"], row["rotation"]): float(row[volume]) for row in rows
                           if (row["way"], row["stop"], volume) == (way.name, UNFINISHED, "phi_surface")}
                 if packs:
