@@ -4,6 +4,7 @@
 
 #include "dynamics/kernel_contact.hpp"
 #include "geometry/container.hpp"
+#include "scene/mixture.hpp"
 
 namespace packmpi::dynamics {
 namespace {
@@ -104,18 +105,12 @@ plain::Touch touch_of_pair(const scene::Scene& scene, const particles::Store& st
   return plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
 }
 
-/// Of a pair; of several components with their codes added up.
-struct Pairing {
-  plain::Reduced reduced;
-  double code;
-};
-Pairing pairing(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i, LocalIndex j) {
+plain::Reduced reduced_of(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
+                          LocalIndex j) {
   const double k = store.record(j)[store.layout().curvature] + store.record(i)[store.layout().curvature];
-  if (!scene.features.mixture) {
-    return {plain::reduced_of_pair(law.mass_factor, k, store.radius(j) + store.radius(i)), 0.0};
-  }
-  const particles::Substance a = store.substance(i), b = store.substance(j);
-  return {plain::reduced_of_mixed(k, a.inverse_mass + b.inverse_mass), a.code + b.code};
+  return scene.features.mixture
+             ? plain::reduced_of_mixed(k, store.substance(i).inverse_mass + store.substance(j).inverse_mass)
+             : plain::reduced_of_pair(law.mass_factor, k, store.radius(j) + store.radius(i));
 }
 
 }  // namespace
@@ -123,27 +118,27 @@ Pairing pairing(const scene::Scene& scene, const Law& law, const particles::Stor
 ContactEffect pair_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                            LocalIndex j, const StoredView& stored, std::int64_t entry) {
   const plain::Touch touch = touch_of_pair(scene, store, i, j);
-  const Pairing pair = pairing(scene, law, store, i, j);
+  const plain::Reduced reduced = reduced_of(scene, law, store, i, j);
   const Vec3 vi = store.velocity(i), vj = store.velocity(j), wi = store.spin(i), wj = store.spin(j);
-  Meeting at{pair.reduced, touch.normal, touch.bend, touch.gap < 0.0 ? 0.0 : touch.gap, {}, {}, {}, {}};
+  Meeting at{reduced, touch.normal, touch.bend, touch.gap < 0.0 ? 0.0 : touch.gap, {}, {}, {}, {}};
   at.v = {vj[0] - vi[0], vj[1] - vi[1], vj[2] - vi[2]};
   at.s = sum(scaled(store.radius(j), vector_of(wj)), store.radius(i), vector_of(wi));
   at.spin = {wj[0] - wi[0], wj[1] - wi[1], wj[2] - wi[2]};
-  return resolve(scene, law, law.of_pair(pair.code), at, stored, entry);
+  return resolve(scene, law, law.of_pair(scene::pair_code(store, i, j)), at, stored, entry);
 }
 
 double pair_spring_energy(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                           LocalIndex j, const StoredView& stored, std::int64_t entry) {
-  const Pairing pair = pairing(scene, law, store, i, j);
-  return energy(scene, law.of_pair(pair.code), pair.reduced.radius, touch_of_pair(scene, store, i, j), stored, entry);
+  const LawConstants& kind = law.of_pair(scene::pair_code(store, i, j));
+  const double radius = reduced_of(scene, law, store, i, j).radius;
+  return energy(scene, kind, radius, touch_of_pair(scene, store, i, j), stored, entry);
 }
 
 double wall_spring_energy(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,
                           const geometry::Facing& wall, const StoredView& stored, std::int64_t entry) {
   const double r = store.radius(i);
   const plain::Touch touch{vector_of(wall.normal), 0.0, r - wall.distance};
-  const double code = scene.features.mixture ? store.substance(i).code : 0.0;
-  return energy(scene, law.of_wall(code), r, touch, stored, entry);
+  return energy(scene, law.of_wall(scene::wall_code(store, i)), r, touch, stored, entry);
 }
 
 ContactEffect wall_contact(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,

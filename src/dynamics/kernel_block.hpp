@@ -40,7 +40,7 @@ struct Memory {
   /// Flips the sign of the first's fields that are subtracted in the first reading, or of those that were not, in the
   /// second.
   static PACKMPI_INLINE BitRow signs(int offset, bool second) {
-    return row_of([&](int lane) { return sign(offset + lane, second); });
+    return row_of<BitRow>([&](int lane) { return sign(offset + lane, second); });
   }
   static constexpr std::uint64_t sign(int offset, bool second) {
     bool differs = false;
@@ -127,8 +127,9 @@ PACKMPI_INLINE Periods periods_of(const StepData& data) {
   return p;
 }
 
-/// geometry::shortest, with the half period at hand.
-PACKMPI_INLINE double shortest(double d, double period, double half) {
+/// geometry::shortest, with the half period at hand; of numbers or of lanes.
+template <class Number>
+PACKMPI_INLINE Number shortest(Number d, Number period, Number half) {
   d = d > half ? d - period : d;
   return d < -half ? d + period : d;
 }
@@ -140,14 +141,13 @@ PACKMPI_INLINE Row weighed(Row pair, const Periods& periods, int field) {
   constexpr double safely = 1.0 + 1e-12;
   if constexpr (F.periodic) {
     const auto lanes = [&](const double(&of)[2], double other) {
-      return row_with([&](int e) { return field + e < F.dimension - 1 ? of[field + e] : other; });
+      return row_of<Row>([&](int e) { return field + e < F.dimension - 1 ? of[field + e] : other; });
     };
     const Row period = lanes(periods.period, 0.0), half = lanes(periods.half, __builtin_inf());
-    pair = pair > half ? pair - period : pair;
-    pair = pair < -half ? pair + period : pair;
+    pair = shortest(pair, period, half);
   }
   const Row weight =
-      row_with([&](int e) { return field + e < F.dimension ? 1.0 : (field + e == F.dimension ? -safely : 0.0); });
+      row_of<Row>([&](int e) { return field + e < F.dimension ? 1.0 : (field + e == F.dimension ? -safely : 0.0); });
   return pair * pair * weight;
 }
 
@@ -356,7 +356,7 @@ PACKMPI_INLINE void scatter(const StepData& data, Block<F>& b) {
       j[e] = data.ring + std::int64_t{b.second_slot[entry]} * accumulators;
     }
     for (int a = 0; a < accumulators; a += width) {
-      const BitRow flip = row_of([&](int e) { return M::minus(a + e); });
+      const BitRow flip = row_of<BitRow>([&](int e) { return M::minus(a + e); });
       BitRow given[width];
       BitRow taken[width];
       for (int e = 0; e < width; ++e) given[e] = M::given(a + e) ? load_row(b.out[a + e] + p) : BitRow{};

@@ -63,21 +63,12 @@ PACKMPI_INLINE void store_row(std::int64_t* p, BitRow a) { *reinterpret_cast<Bit
 PACKMPI_INLINE Row flipped(Row a, BitRow signs) { return reinterpret_cast<Row>(reinterpret_cast<BitRow>(a) ^ signs); }
 
 /// Of the number that `of` gives for each lane: at once, as lanes that are set one by one stay in memory.
-template <class Number>
-PACKMPI_INLINE BitRow row_of(const Number& of) {
+template <class V, class Number>
+PACKMPI_INLINE V row_of(const Number& of) {
 #ifdef __AVX__
-  return BitRow{of(0), of(1), of(2), of(3)};
+  return V{of(0), of(1), of(2), of(3)};
 #else
-  return BitRow{of(0), of(1)};
-#endif
-}
-
-template <class Number>
-PACKMPI_INLINE Row row_with(const Number& of) {
-#ifdef __AVX__
-  return Row{of(0), of(1), of(2), of(3)};
-#else
-  return Row{of(0), of(1)};
+  return V{of(0), of(1)};
 #endif
 }
 
