@@ -324,7 +324,7 @@ TEST(Neighborhood, AParticleOutsideIsAFaultOnceListsAreDue) {
   }
   const std::int64_t before = w.hood.rebuilds();
   EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.2 * w.scene.skin / 0.1), Alarm::none);
-  EXPECT_EQ(w.hood.follow(w.store, 0.1, 0.4 * w.scene.skin / 0.1), Alarm::fault);
+  EXPECT_EQ(w.hood.follow(w.store, 0.1, w.scene.most_margin / 0.1), Alarm::fault);
   EXPECT_EQ(w.hood.rebuilds(), before);
   w.hood.arrive(w.store);
 }
