@@ -5,11 +5,11 @@
 
 namespace packmpi {
 
-/// v.resize(size), allocating at most an eighth more than asked. Local.
+/// v.resize(size, value), allocating at most an eighth more than asked. Local.
 template <class T>
-void resize_tightly(std::vector<T>& v, std::size_t size) {
+void resize_tightly(std::vector<T>& v, std::size_t size, const T& value = {}) {
   if (size > v.capacity()) v.reserve(size + size / 8);
-  v.resize(size);
+  v.resize(size, value);
 }
 
 }  // namespace packmpi

@@ -14,7 +14,7 @@ void Baggage::clear() {
 void Baggage::add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs) {
   std::int64_t& head = head_[static_cast<std::size_t>(slot)];
   const std::size_t at = items_.size();
-  items_.resize(at + each_);
+  resize_tightly(items_, at + each_);
   double* out = items_.data() + at;
   *out++ = std::bit_cast<double>(partner);
   *out++ = std::bit_cast<double>(head);
@@ -55,8 +55,7 @@ std::size_t Baggage::read(std::span<const std::byte> in) {
     std::memcpy(to, from, bytes);
     from += bytes;
   };
-  head_.push_back(none);
-  const std::vector<double> as_they_are(doubles_, 1.0);
+  fit(static_cast<LocalIndex>(head_.size()) + 1);
   std::vector<double> values(doubles_);
   std::uint64_t count = 0;
   get(&count, sizeof count);
@@ -64,7 +63,7 @@ std::size_t Baggage::read(std::span<const std::byte> in) {
     GlobalId partner = 0;
     get(&partner, sizeof partner);
     get(values.data(), doubles_ * sizeof(double));
-    add(static_cast<LocalIndex>(head_.size()) - 1, partner, values.data(), 1, as_they_are.data());
+    add(static_cast<LocalIndex>(head_.size()) - 1, partner, values.data(), 1, as_they_are_.data());
   }
   return static_cast<std::size_t>(from - in.data());
 }

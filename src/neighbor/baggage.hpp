@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/grow.hpp"
 #include "base/types.hpp"
 
 namespace packmpi::neighbor {
@@ -14,7 +15,8 @@ namespace packmpi::neighbor {
 /// the partner. The partner is the id of a particle, or -1 - the number of a wall. Local: no MPI.
 class Baggage {
  public:
-  explicit Baggage(int doubles) : doubles_(static_cast<std::size_t>(doubles)), each_(doubles_ + 2) {}
+  explicit Baggage(int doubles)
+      : doubles_(static_cast<std::size_t>(doubles)), each_(doubles_ + 2), as_they_are_(doubles_, 1.0) {}
 
   struct Item {
     GlobalId partner;
@@ -26,7 +28,7 @@ class Baggage {
   [[nodiscard]] std::size_t size() const noexcept { return items_.size() / each_; }
   void reserve(std::size_t contacts) { items_.reserve(contacts * each_); }
   /// Lists for `count` particles; those there are stay.
-  void fit(LocalIndex count) { head_.resize(static_cast<std::size_t>(count), none); }
+  void fit(LocalIndex count) { resize_tightly(head_, static_cast<std::size_t>(count), none); }
 
   /// Precondition: slot < the count of fit(). value c is signs[c] * values[c * step].
   void add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs);
@@ -65,9 +67,10 @@ class Baggage {
   static std::int64_t next(const double* item) noexcept { return std::bit_cast<std::int64_t>(item[1]); }
 
   std::size_t doubles_;
-  std::size_t each_;                // doubles of an item
-  std::vector<std::int64_t> head_;  // by slot, where its first item begins
-  std::vector<double> items_;       // partner and place of the next one, bit by bit, then the stored doubles: one line
+  std::size_t each_;                 // doubles of an item
+  std::vector<double> as_they_are_;  // ones
+  std::vector<std::int64_t> head_;   // by slot, where its first item begins
+  std::vector<double> items_;        // partner and place of the next one, bit by bit, then the stored doubles: one line
 };
 
 template <class See>
@@ -79,11 +82,10 @@ void Baggage::each(LocalIndex slot, See see) const {
 
 template <class Wanted>
 void Baggage::append(const Baggage& from, LocalIndex slot, Wanted wanted) {
-  head_.push_back(none);
-  const std::vector<double> as_they_are(doubles_, 1.0);
+  fit(static_cast<LocalIndex>(head_.size()) + 1);
   from.each(slot, [&](const Item& item) {
     if (wanted(item.partner)) {
-      add(static_cast<LocalIndex>(head_.size()) - 1, item.partner, item.values.data(), 1, as_they_are.data());
+      add(static_cast<LocalIndex>(head_.size()) - 1, item.partner, item.values.data(), 1, as_they_are_.data());
     }
   });
 }

@@ -37,7 +37,6 @@ void ContactMemory::end_pick_up(const WallList& walls) {
     if (is_zero(wall_values_, contacts, w)) continue;
     baggage_.add(walls.particle[w], wall_partner(walls.wall[w]), &wall_values_[w], contacts, the_same_.data());
   }
-  expected_ = baggage_.size() + baggage_.size() / 16;
 }
 
 void ContactMemory::pick_up(const particles::Store& store, const PairList& pairs, const WallList& walls,
@@ -95,6 +94,7 @@ void ContactMemory::lay_down(const particles::Store& store, const PairList& pair
   lay(pair_values_, entries);
   lay(wall_values_, contacts);
   listed_ = true;
+  expected_ = baggage_.size() + baggage_.size() / 16;
   if (baggage_.empty()) return;
   for (std::size_t p = 0; p < entries; ++p) {
     const LocalIndex i = pairs.first[p], j = pairs.second[p];

@@ -48,13 +48,19 @@ void Frozen::take(particles::Store& from, GlobalId below, Baggage* contacts) {
 
 void Frozen::give_back(particles::Store& to, Baggage* contacts) {
   to.set_ghosts(0);
+  store_.set_ghosts(0);
   if (contacts != nullptr) {
     contacts->fit(to.owned());
     contacts->reserve(contacts->size() + baggage_.size());
   }
-  for (LocalIndex i = 0; i < store_.owned(); ++i) {
-    to.add_record(store_.ids()[static_cast<std::size_t>(i)], store_.record(i));
-    if (contacts != nullptr) contacts->append(baggage_, i, [](GlobalId) { return true; });
+  constexpr LocalIndex pieces = 16;  // what is given back is freed piece by piece: no particle is held twice for long
+  const LocalIndex piece = store_.owned() / pieces + 1;
+  while (store_.owned() > 0) {
+    const LocalIndex last = store_.owned() - 1;
+    to.add_record(store_.ids()[static_cast<std::size_t>(last)], store_.record(last));
+    if (contacts != nullptr) contacts->append(baggage_, last, [](GlobalId) { return true; });
+    store_.keep_first(last);
+    if (last % piece == 0) store_.give_back_rest();
   }
   baggage_.clear();
   store_ = particles::Store(store_.layout());

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <utility>
 
 #include "base/grow.hpp"
@@ -17,7 +17,12 @@ namespace {
 constexpr std::size_t alignment = 64;                        // bytes
 constexpr std::size_t padding = alignment / sizeof(double);  // doubles
 
-std::size_t allocated(std::size_t capacity) { return (capacity + padding) * sizeof(double); }
+// A line before the first aligned place, at most, and one after the last element.
+std::size_t allocated(std::size_t capacity) { return (capacity + 2 * padding) * sizeof(double); }
+
+std::size_t to_aligned(const std::byte* p) {
+  return (alignment - reinterpret_cast<std::uintptr_t>(p) % alignment) % alignment;
+}
 
 /// Follows each cycle of the permutation once: `from` moves to `cur`, and so on round. Done slots are marked by
 /// order[i] = i. The stride known to the compiler makes each copy a few vector moves.
@@ -60,24 +65,33 @@ void permute_cycles(int stride, std::span<LocalIndex> order, double* records, st
 }  // namespace
 
 void AlignedDoubles::swap(AlignedDoubles& other) noexcept {
+  std::swap(block_, other.block_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
   std::swap(capacity_, other.capacity_);
 }
 
-std::size_t AlignedDoubles::bytes() const noexcept { return data_ ? allocated(capacity_) : 0; }
+std::size_t AlignedDoubles::bytes() const noexcept { return block_ ? allocated(capacity_) : 0; }
 
 void AlignedDoubles::resize(std::size_t size) {
-  if (size > capacity_) {
-    const std::size_t wanted = size + size / 10;
-    const std::size_t capacity = (wanted + padding - 1) / padding * padding;  // aligned_alloc takes whole lines
-    std::unique_ptr<double, Free> grown(static_cast<double*>(std::aligned_alloc(alignment, allocated(capacity))));
-    if (!grown) throw OutOfMemory(allocated(capacity));
-    if (size_ > 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(double));
-    data_ = std::move(grown);
-    capacity_ = capacity;
-  }
+  if (size > capacity_) allocate(size + size / 10);
   size_ = size;
+}
+
+void AlignedDoubles::give_back_rest() {
+  if (block_) allocate(size_);
+}
+
+void AlignedDoubles::allocate(std::size_t capacity) {
+  const std::size_t before = block_ ? to_aligned(block_.get()) : 0;
+  auto* const moved = static_cast<std::byte*>(std::realloc(block_.get(), allocated(capacity)));
+  if (moved == nullptr) throw OutOfMemory(allocated(capacity));
+  static_cast<void>(block_.release());  // realloc has freed it
+  block_.reset(moved);
+  const std::size_t now = to_aligned(moved);
+  if (now != before) std::memmove(moved + now, moved + before, std::min(size_, capacity) * sizeof(double));
+  data_ = reinterpret_cast<double*>(moved + now);
+  capacity_ = capacity;
 }
 
 Vec3 Store::spin(LocalIndex i) const noexcept {
@@ -149,6 +163,11 @@ void Store::permute(std::span<LocalIndex> order) {
   assert(order.size() == static_cast<std::size_t>(owned_));
   set_ghosts(0);
   permute_cycles(layout_.stride, order, records_.data(), ids_);
+}
+
+void Store::give_back_rest() {
+  records_.give_back_rest();
+  ids_.shrink_to_fit();
 }
 
 std::size_t Store::bytes() const noexcept { return records_.bytes() + ids_.capacity() * sizeof(GlobalId); }

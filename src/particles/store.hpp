@@ -23,18 +23,23 @@ class AlignedDoubles {
     return *this;
   }
   void swap(AlignedDoubles& other) noexcept;
-  [[nodiscard]] double* data() noexcept { return data_.get(); }
-  [[nodiscard]] const double* data() const noexcept { return data_.get(); }
+  [[nodiscard]] double* data() noexcept { return data_; }
+  [[nodiscard]] const double* data() const noexcept { return data_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< allocated, padding included
-  void resize(std::size_t size);  ///< keeps the contents; grows by a tenth more than needed. Errors: std::bad_alloc
+  /// Keeps the contents; grows by a tenth more than needed, where it is if the system can: large arrays are not held
+  /// twice. Errors: OutOfMemory
+  void resize(std::size_t size);
+  void give_back_rest();  ///< What is allocated beyond the size.
 
  private:
+  void allocate(std::size_t capacity);
   struct Free {
-    void operator()(double* p) const noexcept { std::free(p); }
+    void operator()(std::byte* p) const noexcept { std::free(p); }
   };
-  std::unique_ptr<double, Free> data_;
+  std::unique_ptr<std::byte, Free> block_;
+  double* data_ = nullptr;  // the first aligned place in it
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };
@@ -97,6 +102,8 @@ class Store {
   /// Put the owned particles into the order order[0], order[1], ... (each slot once) and drop all ghosts. In place, so
   /// that no second copy of the particles is ever held; `order` is used up. Cost: one pass over the records.
   void permute(std::span<LocalIndex> order);
+  /// Gives back the memory allocated beyond what is there.
+  void give_back_rest();
   /// Bytes allocated for the particles.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
