@@ -246,9 +246,10 @@ struct Checkpoint {
 };
 
 struct Output {
-  bool contacts = false;   ///< write /contacts
-  bool analysis = false;   ///< write NAME.analysis.json
-  double log_every = 0.0;  ///< [s] of simulated time between rows of NAME.steps.csv; 0: each step
+  bool contacts = false;  ///< write /contacts
+  bool analysis = false;  ///< write NAME.analysis.json
+  std::optional<double>
+      log_every;  ///< [s] of simulated time between rows of NAME.steps.csv; 0: each step; none: "auto"
 };
 
 struct Petsc {

@@ -19,10 +19,6 @@ constexpr double crossings_a_window = 10.0, most_crossings = 1000.0;
 // Lists are made for particles that move by half the skin, and walls by the other half.
 constexpr double share_of_skin = 0.45;
 
-std::int64_t steps_in(double seconds, double time_step) {
-  return std::max<std::int64_t>(1, std::llround(seconds / time_step));
-}
-
 }  // namespace
 
 State begin(const scene::Scene& scene, double top) {
@@ -46,9 +42,10 @@ Press::Press(const comm::Comm& comm, const scene::Scene& scene, geometry::Contai
       lid_tick_(lid_tick(scene, gains_)),
       side_tick_(side_tick(scene, gains_)),
       periods_move_(scene.in.confinement->on_sides().has_value() && scene.features.periodic),
-      window_(steps_in(crossings_a_window * gains_.crossing, scene.confining_step)),
-      row_(steps_in(scene.in.output.log_every, scene.confining_step)),
-      most_(steps_in(scene.in.confinement->wait.value_or(most_crossings * gains_.crossing), scene.confining_step)) {}
+      window_(scene::steps_in(crossings_a_window * gains_.crossing, scene.confining_step)),
+      row_(scene::steps_a_row(scene.in.output, scene.confining_step)),
+      most_(scene::steps_in(scene.in.confinement->wait.value_or(most_crossings * gains_.crossing),
+                            scene.confining_step)) {}
 
 // Lid, and lateral walls that move: by the forces on them.
 void Press::steer_walls() {

@@ -35,7 +35,7 @@ constexpr double program_bytes = 51e6;
 constexpr double growth = 1.1;
 constexpr std::array<double, 2> pairs_a_particle{2.7, 3.4};  // listed, of discs, of spheres
 constexpr double pair_bytes = 2.0 * sizeof(LocalIndex);
-constexpr double held = 1.4;
+constexpr double held = 1.25;
 constexpr std::array<double, 2> contacts_of_one{4.5, 5.2};  // of a disc, of a sphere
 constexpr double row_bytes = 350.0, contact_row_bytes = 250.0;
 
@@ -303,8 +303,8 @@ void add_files(const comm::Comm& comm, const scene::Scene& scene, report::Estima
   for (std::int64_t layer = 0; layer < e.layers.value; ++layer) state.progress.first_ids.push_back(layer * e.a_layer);
   e.checkpoint_bytes =
       pack::checkpoint_bytes(scene.features.layout(), state, scene.features, contacts.pairs + contacts.walls);
-  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : scene.settling.time_step;
-  e.step_log_bytes = std::llround(step_row_bytes * std::max(1.0, e.duration / interval));
+  const std::int64_t logged = e.steps / scene::steps_a_row(scene.in.output, scene.settling.time_step);
+  e.step_log_bytes = std::llround(step_row_bytes * static_cast<double>(std::max<std::int64_t>(1, logged)));
 }
 
 void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, report::Estimate& e) {

@@ -436,8 +436,8 @@ std::vector<Key> program_keys() {
          "Wall time between checkpoints (\"30 s\", \"10min\", \"2h\"), or time steps (\"5000 steps\"); \"off\": only when told to stop."),
     word("output.contacts", at(&Input::output, &Output::contacts), "false", "Write the contacts, with overlaps, forces and springs, too: with them a converted pack stays at rest."),
     word("output.analysis", at(&Input::output, &Output::analysis), "false", "Measure the pack inside when it is done, as `packmpi analyze` would: NAME.analysis.json."),
-    real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "0.01",
-         "Simulated time between rows of NAME.steps.csv; 0: a row each step."),
+    real("output.log_every", at(&Input::output, &Output::log_every), time, at_least(0), "auto",
+         "Simulated time between rows of NAME.steps.csv; 0: a row each step; \"auto\": a hundred steps."),
     word("petsc.options", at(&Input::petsc, &Petsc::options), R"("")", "Options for PETSc's solvers and reports, none that names a file: \"-log_view\", \"-implicit_snes_rtol 1e-9\"."),
   };
 }

@@ -30,15 +30,11 @@ constexpr int looks_a_hold = 10;
 // 2^6 stairs of the hardening ramp: six square roots give the ratio.
 constexpr int stair_roots = 6;
 
-std::int64_t steps_in(double seconds, double time_step) {
-  return std::max<std::int64_t>(1, std::llround(seconds / time_step));
-}
-
 // When a part of the run must be interrupted, in steps from its beginning.
 struct Plan {
   scene::Stage stage;
   std::int64_t steps;       // in all
-  std::int64_t log_every;   // steps between rows of the step log
+  std::int64_t row_every;   // steps between rows of the step log
   std::int64_t look_every;  // steps between looks at the criteria; 0: none
   std::int64_t rate_from;
   std::int64_t wait;         // steps that it goes on at most until the bed is at rest; 0: it does not
@@ -77,7 +73,7 @@ struct Plan {
     return wait > 0 && now.done >= first && (now.done == first || next_stop(now.done - 1) == now.done);
   }
   [[nodiscard]] std::int64_t next(std::int64_t done) const {
-    std::int64_t stop = std::min(done < steps ? steps : window_end(done), (done / log_every + 1) * log_every);
+    std::int64_t stop = std::min(done < steps ? steps : window_end(done), (done / row_every + 1) * row_every);
     if (wait > 0 && done >= steps) stop = std::min(stop, next_stop(done));
     if (look_every > 0) stop = std::min(stop, (done / look_every + 1) * look_every);
     if (done < rate_from) stop = std::min(stop, rate_from);
@@ -93,17 +89,16 @@ Plan plan_of(const scene::Scene& scene, Part part) {
   const scene::Stage stage = layer ? scene.settling : scene.last();
   const double seconds = layer ? scene.in.layers.duration : scene.relaxation;
   const double wait = layer ? 0.0 : scene.wait;
-  const double interval = scene.in.output.log_every > 0.0 ? scene.in.output.log_every : stage.time_step;
   Plan plan{.stage = stage,
-            .steps = seconds > 0.0 ? steps_in(seconds, stage.time_step) : 0,
-            .log_every = steps_in(interval, stage.time_step),
+            .steps = seconds > 0.0 ? scene::steps_in(seconds, stage.time_step) : 0,
+            .row_every = scene::steps_a_row(scene.in.output, stage.time_step),
             .look_every = 0,
             .rate_from = 0,
-            .wait = wait > 0.0 ? steps_in(wait, stage.time_step) : 0,
-            .wait_window = steps_in(wait / windows_a_wait, stage.time_step),
+            .wait = wait > 0.0 ? scene::steps_in(wait, stage.time_step) : 0,
+            .wait_window = scene::steps_in(wait / windows_a_wait, stage.time_step),
             .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
   if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
-    plan.look_every = steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
+    plan.look_every = scene::steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
   }
   plan.rate_from = plan.steps - std::max<std::int64_t>(1, std::llround(rate_share * static_cast<double>(plan.steps)));
   return plan;
@@ -245,7 +240,7 @@ Settled settle(Bed& bed, Attendant& attendant, Part part) {
     now.done = next;
     if (plan.look_every > 0 && next % plan.look_every == 0) early = has_settled(bed, plan, attendant);
     over = early || is_over(bed, plan);
-    if (next % plan.log_every == 0 || next == plan.steps || over) {
+    if (next % plan.row_every == 0 || next == plan.steps || over) {
       attendant.moment(static_cast<double>(next) / static_cast<double>(std::max(next, plan.steps)));
     }
     if (!early) attendant.look();  // a part that is over goes on with what comes after it

@@ -248,6 +248,15 @@ geometry::ColumnGrid Scene::columns() const {
   return {container, room() * (plenty ? wide : column_width()), most_columns};
 }
 
+std::int64_t steps_in(double seconds, double time_step) {
+  return std::max<std::int64_t>(1, std::llround(seconds / time_step));
+}
+
+std::int64_t steps_a_row(const input::Output& output, double time_step) {
+  constexpr std::int64_t usual = 100;  // a row costs three steps: 3 %
+  return output.log_every ? steps_in(*output.log_every, time_step) : usual;
+}
+
 double safe_time_step(const input::Input& in, const Sizes& sizes) {
   return input::safe_step(in, range(sizes), in.particles.youngs_modulus);
 }

@@ -75,4 +75,9 @@ struct Scene {
 /// particle is taken with a warning: the paper's own example 5.2 has one.
 [[nodiscard]] double safe_time_step(const input::Input& in, const Sizes& sizes);
 
+/// Steps of `time_step` [s] in `seconds`: the nearest number, at least one.
+[[nodiscard]] std::int64_t steps_in(double seconds, double time_step);
+/// From row to row of the step log, in a stage of that step [s].
+[[nodiscard]] std::int64_t steps_a_row(const input::Output& output, double time_step);
+
 }  // namespace packmpi::scene

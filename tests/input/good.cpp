@@ -210,7 +210,7 @@ TEST(GoodInput, DefaultsAreTheDocumentedOnes) {
   EXPECT_FALSE(in.rest.wait.has_value());
   EXPECT_EQ(in.parallel.decomposition, Decomposition::slab);
   EXPECT_FALSE(in.output.contacts);
-  EXPECT_EQ(in.output.log_every, 0.01);
+  EXPECT_EQ(in.output.log_every, std::nullopt);
   EXPECT_EQ(in.petsc.options, "");
 }
 
