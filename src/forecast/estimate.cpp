@@ -324,9 +324,21 @@ void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, r
   e.particles.most += by_chance(e.particles.most) + most.uncertainty;
 }
 
+// Steps of the final stage: its own, or as many more as beds with memory took until they were at rest, most of them
+// within a half more or less (doc/data/presets.csv); none that waits takes longer than it may.
+std::int64_t final_steps(const scene::Scene& scene) {
+  constexpr double falls = 2.5, wide = 5.0, falls_if_wide = 10.0;
+  if (!(scene.relaxation > 0.0)) return 0;
+  const std::int64_t own = run::steps_of(scene, run::Part::relaxation);
+  if (!(scene.wait > 0.0) || !scene.features.memory) return own;
+  const double fall = std::sqrt(2.0 * scene.in.layers.thickness / scene.in.jamming.gravity);
+  const double usual = (scene.sizes.ratio() > wide ? falls_if_wide : falls) * fall;
+  return std::clamp(scene::steps_in(usual, scene.time_step), own, own + scene::steps_in(scene.wait, scene.time_step));
+}
+
 void add_steps(const scene::Scene& scene, report::Estimate& e) {
   const std::int64_t layer = run::steps_of(scene, run::Part::layer);
-  e.relaxation_steps = scene.relaxation > 0.0 ? run::steps_of(scene, run::Part::relaxation) : 0;
+  e.relaxation_steps = final_steps(scene);
   e.steps = e.layers.value * layer + e.relaxation_steps;
   e.duration = static_cast<double>(e.layers.value * layer) * scene.settling.time_step +
                static_cast<double>(e.relaxation_steps) * scene.time_step;
@@ -391,8 +403,7 @@ std::int64_t particle_steps_of(const scene::Scene& scene, std::int64_t layers, s
   const std::int64_t window = scene.in.dynamics.window;
   const std::int64_t growing = window > 0 ? std::min(layers, window) : layers;  // layers in which more and more move
   const std::int64_t moved = growing * (growing + 1) / 2 + growing * (layers - growing);
-  const std::int64_t relaxation = scene.relaxation > 0.0 ? layers * run::steps_of(scene, run::Part::relaxation) : 0;
-  return a_layer * (moved * run::steps_of(scene, run::Part::layer) + relaxation);
+  return a_layer * (moved * run::steps_of(scene, run::Part::layer) + layers * final_steps(scene));
 }
 
 std::int64_t memory_a_rank(const scene::Scene& scene, int ranks) {

@@ -19,6 +19,7 @@
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "run/make_pack.hpp"
+#include "run/settle.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
 
@@ -47,7 +48,7 @@ gravity = 5.0
 [contact]
 damping_ratio = 0.3
 [rest]
-wait = 0.0   # how long a bed takes to come to rest is not estimated
+wait = 0.0   # of other scenes than that of a final stage until rest
 )";
 
 class Estimates : public ::testing::Test {
@@ -222,6 +223,22 @@ TEST_F(Estimates, StepsOfTheMovingParticlesAreThoseOfTheLoop) {
       steps += 2000 * 10 * (window > 0 ? std::min<std::int64_t>(window, layer) : layer);
     EXPECT_EQ(particle_steps_of(s, 7, 10), steps + 2000 * 70) << window;
   }
+}
+
+// Beyond dynamics.relaxation, which "draft" gives for a start only: without, less than half of the steps were foretold.
+TEST_F(Estimates, TheFinalStageLastsUntilTheBedIsAtRest) {
+  Set set{"fidelity=\"draft\"", "contact.tangential=\"mindlin\"", "rest.wait=\"auto\""};
+  const report::Estimate e = of(without_probe({.particles = 600}), set);
+  const Set size = proposed(e);
+  set.insert(set.end(), size.begin(), size.end());
+  const scene::Scene s = scene(set);
+  ASSERT_GT(s.wait, 0.0);
+  EXPECT_GT(e.relaxation_steps, 3 * run::steps_of(s, run::Part::relaxation));
+  const report::RunRecord record = run::make_pack(comm_, s, options(set));
+  EXPECT_NEAR(static_cast<double>(record.particle_steps) / static_cast<double>(e.particle_steps), 1.0, 0.4);
+  const scene::Scene patient = scene({"fidelity=\"balanced\"", "contact.tangential=\"mindlin\"", "rest.wait=\"auto\""});
+  const std::int64_t own = run::steps_of(patient, run::Part::relaxation);
+  EXPECT_EQ(particle_steps_of(patient, 1, 1), run::steps_of(patient, run::Part::layer) + own) << "longer than that";
 }
 
 // Layers that end at H_d: what fits below it, and the height and the floor for as many.
