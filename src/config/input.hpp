@@ -246,10 +246,9 @@ struct Checkpoint {
 };
 
 struct Output {
-  bool contacts = false;  ///< write /contacts
-  bool analysis = false;  ///< write NAME.analysis.json
-  std::optional<double>
-      log_every;  ///< [s] of simulated time between rows of NAME.steps.csv; 0: each step; none: "auto"
+  bool contacts = false;            ///< write /contacts
+  bool analysis = false;            ///< write NAME.analysis.json
+  std::optional<double> log_every;  ///< [s] simulated, from row to row of NAME.steps.csv; 0: each step; none: "auto"
 };
 
 struct Petsc {

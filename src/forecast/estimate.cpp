@@ -330,7 +330,7 @@ std::int64_t final_steps(const scene::Scene& scene) {
   constexpr double falls = 2.5, wide = 5.0, falls_if_wide = 10.0;
   if (!(scene.relaxation > 0.0)) return 0;
   const std::int64_t own = run::steps_of(scene, run::Part::relaxation);
-  if (!(scene.wait > 0.0) || !scene.features.memory) return own;
+  if (!(scene.wait > 0.0) || !scene.features.memory || !(scene.in.jamming.gravity > 0.0)) return own;
   const double fall = std::sqrt(2.0 * scene.in.layers.thickness / scene.in.jamming.gravity);
   const double usual = (scene.sizes.ratio() > wide ? falls_if_wide : falls) * fall;
   return std::clamp(scene::steps_in(usual, scene.time_step), own, own + scene::steps_in(scene.wait, scene.time_step));
