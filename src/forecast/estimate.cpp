@@ -235,7 +235,7 @@ double list_bytes(const scene::Scene& scene) {
   return pairs * (growth * pair_bytes + sizeof(double) * (stored + touching * (stored + 2)));
 }
 
-// Of a rank with `own` particles: in the end, or while their records move to a larger place.
+// Of a rank with `own` particles, when all begin to move in the final stage and some records are there twice.
 double settling_bytes(const scene::Scene& scene, double own, double ghosts) {
   const auto record = static_cast<double>(scene.features.layout().record_bytes());
   return program_bytes + held * own * ((1.0 + ghosts) * own_bytes(scene) + record + list_bytes(scene));

@@ -180,7 +180,7 @@ Facing Container::facing_part(std::size_t part, const Vec3& x) const {
     const Side& side = polygon->sloping()[part];
     return {side.distance(x), side.normal};
   }
-  const mesh::Touch touch = interior->touch_of(static_cast<std::int32_t>(part), x, behind);
+  const mesh::Touch touch = interior->touch_of(static_cast<std::int32_t>(part), x, deepest);
   return {touch.distance, {touch.normal[0], touch.normal[1], touch.normal[2]}};
 }
 
@@ -315,7 +315,7 @@ double Container::slab(std::size_t axis, double from, double to, double low, dou
 
 void Container::touching_planes(const Vec3& x, double range, const Found& found) const {
   if (is_mesh()) {
-    interior->touches(x, range, behind, [&](std::int32_t, const mesh::Touch& touch) {
+    interior->touches(x, range, deepest, [&](std::int32_t, const mesh::Touch& touch) {
       found({touch.normal[0], touch.normal[1], touch.normal[2]}, touch.distance);
     });
     return;

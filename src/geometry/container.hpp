@@ -112,7 +112,7 @@ struct Container {
   std::array<double, 2> ends{};             ///< [m] radii of a frustum at the floor and at H_d
   double core = 0.0;                        ///< [m] radius of the inner wall of an annulus
   const mesh::Surface* interior = nullptr;  ///< of a mesh; its owner is asked::Container
-  double behind = 0.0;                      ///< [m] of a mesh: half the smallest radius, see mesh::Table
+  double deepest = 0.0;                     ///< [m] of a mesh: half the smallest radius, see mesh::Table
   const Polygon* polygon = nullptr;         ///< of a polygon; its owner is asked::Container
 
   [[nodiscard]] constexpr int lateral_axes() const { return dimension - 1; }

@@ -15,7 +15,7 @@ struct Table {
   const std::int32_t* spokes_of = nullptr;  ///< of each corner the first, and the end of the last
   const std::int32_t* patch = nullptr;      ///< of each feature: those that are smooth together have one, see Features
   std::int32_t edge_begin = 0, corner_begin = 0;  ///< numbers of the first edge and the first corner
-  double behind = 0.0;                            ///< [m] what is so far behind a face belongs to another interior
+  double deepest = 0.0;                           ///< [m] what is so far behind a face belongs to another interior
 };
 
 /// Towards a wall, and how far it is.
@@ -48,7 +48,7 @@ PACKMPI_CONTACT Touch touch_face(const Table& table, std::int32_t face, const st
                                  std::int32_t end, const double* x, double reach) {
   const double* plane = table.faces + 4 * std::int64_t{face};
   const double distance = plane[3] - along(plane, x);
-  const bool on = distance > -table.behind && distance < reach && stands_on(table, near, begin, end, x);
+  const bool on = distance > -table.deepest && distance < reach && stands_on(table, near, begin, end, x);
   return {{plane[0], plane[1], plane[2]}, on ? distance : far_away};
 }
 

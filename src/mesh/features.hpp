@@ -20,10 +20,10 @@ class Features {
   [[nodiscard]] std::int32_t count() const { return corner_begin_ + static_cast<std::int32_t>(corners_.size() / 3); }
   [[nodiscard]] std::int32_t edge_begin() const { return edge_begin_; }
   [[nodiscard]] std::int32_t corner_begin() const { return corner_begin_; }
-  /// For a step; lives as long as this. `behind`: see Table.
-  [[nodiscard]] Table table(double behind) const {
+  /// For a step; lives as long as this. `deepest`: see Table.
+  [[nodiscard]] Table table(double deepest) const {
     return {faces_.data(),     triangles_.data(), edges_.data(), corners_.data(), spokes_.data(),
-            spokes_of_.data(), patch_.data(),     edge_begin_,   corner_begin_,   behind};
+            spokes_of_.data(), patch_.data(),     edge_begin_,   corner_begin_,   deepest};
   }
   [[nodiscard]] std::int32_t face_of(std::size_t triangle) const { return face_of_[triangle]; }
   /// Numbers of the edge across each side of a triangle and of the corner at each of its points; -1: there is none.

@@ -31,16 +31,16 @@ void NearMemory::keep(Entry& entry) const {
 }
 
 // Faces that have come out of reach are left out.
-void NearMemory::look_through(const Entry& entry, const Surface& surface, const Vec3& x, double range, double behind) {
+void NearMemory::look_through(const Entry& entry, const Surface& surface, const Vec3& x, double range, double deepest) {
   found_.clear();
-  const Table table = surface.features().table(behind);
+  const Table table = surface.features().table(deepest);
   std::int32_t begin = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(entry.features); begin = entry.end.at(k), ++k) {
     const std::int32_t feature = entry.feature.at(k);
     if (feature < table.edge_begin) {
       const double* plane = table.faces + 4 * std::int64_t{feature};
       const double distance = plane[3] - along(plane, x.data());
-      if (!(distance < range && distance > -(behind + range))) continue;
+      if (!(distance < range && distance > -(deepest + range))) continue;
       for (std::int32_t t = begin; t < entry.end.at(k); ++t) {
         found_.triangles.push_back(entry.triangle.at(static_cast<std::size_t>(t)));
       }
@@ -51,22 +51,22 @@ void NearMemory::look_through(const Entry& entry, const Surface& surface, const 
 }
 
 const NearFeatures& NearMemory::near(const Surface& surface, GlobalId id, const Vec3& x, double range, double margin,
-                                     double behind) {
+                                     double deepest) {
   found_.clear();
   if (surface.is_clear(x, range)) return found_;
   ++asked_;
   if (entries_.empty()) {
-    surface.near(x, range, behind, found_);
+    surface.near(x, range, deepest, found_);
     return found_;
   }
   Entry& entry = entries_[static_cast<std::size_t>(id) & (entries_.size() - 1)];
   if (!holds(entry, id, x, range)) {
     entry.id = id, entry.x = x, entry.range = range + margin;
-    surface.near(x, entry.range, behind, found_);
+    surface.near(x, entry.range, deepest, found_);
     keep(entry);
     if (entry.id < 0) return found_;
   }
-  look_through(entry, surface, x, range, behind);
+  look_through(entry, surface, x, range, deepest);
   return found_;
 }
 

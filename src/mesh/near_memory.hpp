@@ -19,7 +19,7 @@ class NearMemory {
   /// All features that are nearer to x than `range` [m], as Surface::near(); valid up to the next call. `margin` [m]:
   /// how much farther to search. Cost: O(what is near), a tenth of that of a search if it is remembered.
   [[nodiscard]] const NearFeatures& near(const Surface& surface, GlobalId id, const Vec3& x, double range,
-                                         double margin, double behind);
+                                         double margin, double deepest);
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -34,7 +34,7 @@ class NearMemory {
   };
   [[nodiscard]] bool holds(const Entry& entry, GlobalId id, const Vec3& x, double range) const;
   void keep(Entry& entry) const;
-  void look_through(const Entry& entry, const Surface& surface, const Vec3& x, double range, double behind);
+  void look_through(const Entry& entry, const Surface& surface, const Vec3& x, double range, double deepest);
 
   NearFeatures found_;
   std::vector<Entry> entries_;  // a power of two of them

@@ -223,11 +223,11 @@ Vec3 Surface::draw(const Vec3& u, double r, double low, double high) const {
   return {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), std::nan("")};
 }
 
-void Surface::touches(const Vec3& x, double range, double behind,
+void Surface::touches(const Vec3& x, double range, double deepest,
                       const std::function<void(std::int32_t, const Touch&)>& found) const {
   NearFeatures close;
-  near(x, range, behind, close);
-  const Table table = features_.table(behind);
+  near(x, range, deepest, close);
+  const Table table = features_.table(deepest);
   for (std::size_t k = 0; k < close.feature.size(); ++k) {
     const Touch here =
         touch(table, close.feature[k], close.triangles.data(), close.begin(k), close.end[k], x.data(), far_away);
@@ -236,10 +236,10 @@ void Surface::touches(const Vec3& x, double range, double behind,
 }
 
 // Of a face's triangles the one with the nearest middle comes first: most often it is the one that is asked for.
-void Surface::near(const Vec3& x, double range, double behind, NearFeatures& found) const {
+void Surface::near(const Vec3& x, double range, double deepest, NearFeatures& found) const {
   found.clear();
   if (is_clear(x, range)) return;
-  const Table table = features_.table(behind);
+  const Table table = features_.table(deepest);
   const double square = range * range;
   const auto close_to = [&](const Vec3& place) { return dot(minus(x, place), minus(x, place)) < square; };
   found.hits.clear();
@@ -256,7 +256,7 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   for (const auto& [t, squared] : found.hits) {
     const std::int32_t face = features_.face_of(static_cast<std::size_t>(t));
     const double* plane = table.faces + 4 * std::int64_t{face};
-    if (plane[3] - along(plane, x.data()) > -(behind + range)) found.feature.push_back(face);
+    if (plane[3] - along(plane, x.data()) > -(deepest + range)) found.feature.push_back(face);
     const Corners c = shell_.corners(static_cast<std::size_t>(t));
     for (std::size_t k = 0; k < 3; ++k) {
       if (const std::int32_t corner = features_.corners_of(static_cast<std::size_t>(t)).at(k);
@@ -286,8 +286,8 @@ void Surface::near(const Vec3& x, double range, double behind, NearFeatures& fou
   }
 }
 
-Touch Surface::touch_of(std::int32_t feature, const Vec3& x, double behind) const {
-  const Table table = features_.table(behind);
+Touch Surface::touch_of(std::int32_t feature, const Vec3& x, double deepest) const {
+  const Table table = features_.table(deepest);
   if (feature >= features_.edge_begin()) return touch(table, feature, nullptr, 0, 0, x.data(), far_away);
   const double* plane = table.faces + 4 * std::int64_t{feature};
   const double height = plane[3] - along(plane, x.data()), margin = shell_.tolerance;

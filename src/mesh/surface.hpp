@@ -91,14 +91,14 @@ class Surface {
   [[nodiscard]] bool is_clear(const Vec3& x, double range) const {
     return (std::abs(clear_[static_cast<std::size_t>(grid_.cell_of(x))]) - 1) * grid_.width() >= range;
   }
-  /// All features that are nearer to x than `range` [m], and some faces that are not; but not more than `behind` [m]
+  /// All features that are nearer to x than `range` [m], and some faces that are not; but not more than `deepest` [m]
   /// and the range on the other side of x.
-  void near(const Vec3& x, double range, double behind, NearFeatures& found) const;
-  /// Where a feature is, seen from x. See Table for `behind`.
-  [[nodiscard]] Touch touch_of(std::int32_t feature, const Vec3& x, double behind) const;
+  void near(const Vec3& x, double range, double deepest, NearFeatures& found) const;
+  /// Where a feature is, seen from x. See Table for `deepest`.
+  [[nodiscard]] Touch touch_of(std::int32_t feature, const Vec3& x, double deepest) const;
 
   /// Calls found(feature, touch) for each that is nearer to x than `range` [m].
-  void touches(const Vec3& x, double range, double behind,
+  void touches(const Vec3& x, double range, double deepest,
                const std::function<void(std::int32_t, const Touch&)>& found) const;
 
   /// [m3] of a sphere what is in the interior. In closed form, to rounding.

@@ -154,7 +154,7 @@ void Neighborhood::build_features(const particles::Store& store, double lid_move
       walls_.near_begin.push_back(before);
     }
     const mesh::NearFeatures& found = near_memory_.near(*vessel.interior, store.ids()[static_cast<std::size_t>(i)], x,
-                                                        extent, 0.1 * store.radius(i), vessel.behind);
+                                                        extent, 0.1 * store.radius(i), vessel.deepest);
     walls_.near.insert(walls_.near.end(), found.triangles.begin(), found.triangles.end());
     for (std::size_t k = 0; k < found.feature.size(); ++k) {
       walls_.particle.push_back(i);

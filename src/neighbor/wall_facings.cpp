@@ -99,7 +99,7 @@ void Neighborhood::face_walls(const particles::Store& store) {
   }
   if (!vessel.is_mesh()) return;
   const mesh::Features& features = vessel.interior->features();
-  const mesh::Table table = features.table(vessel.behind);
+  const mesh::Table table = features.table(vessel.deepest);
   const std::size_t entries = walls_.particle.size();
   walls_.facing.resize(entries);
   Touched mine{.walls = walls_, .memory = memory_, .features = features};

@@ -268,7 +268,7 @@ Scene build(const input::Input& in) {
   scene.features = features_of(in);
   scene.sizes = Sizes(in.particles.radius, in.seed);
   for (const input::Component& of : in.components) scene.component_sizes.emplace_back(of.particles.radius, in.seed);
-  scene.container.behind = 0.5 * scene.sizes.smallest();
+  scene.container.deepest = 0.5 * scene.sizes.smallest();
   scene.reach = 2.0 * scene.sizes.largest();
   if (in.near_field) scene.reach = std::max(scene.reach, in.near_field->cutoff);
   scene.skin = std::min(skin_per_radius * scene.sizes.largest(), skin_per_mean * scene.sizes.mean());

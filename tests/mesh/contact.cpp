@@ -42,15 +42,15 @@ std::vector<Vec3> slow_minima(const Soup& soup, const Vec3& x, double range) {
   return found;
 }
 
-std::vector<Touch> touches(const Surface& surface, const Vec3& x, double range, double behind) {
+std::vector<Touch> touches(const Surface& surface, const Vec3& x, double range, double deepest) {
   NearFeatures near;
-  surface.near(x, range, behind, near);
-  const Table table = surface.features().table(behind);
+  surface.near(x, range, deepest, near);
+  const Table table = surface.features().table(deepest);
   std::vector<Touch> found;
   for (std::size_t k = 0; k < near.feature.size(); ++k) {
     const Touch t =
         touch(table, near.feature[k], near.triangles.data(), near.begin(k), near.end[k], x.data(), far_away);
-    const Touch alone = surface.touch_of(near.feature[k], x, behind);
+    const Touch alone = surface.touch_of(near.feature[k], x, deepest);
     if (t.distance < range) {
       EXPECT_EQ(alone.distance, t.distance);
       EXPECT_EQ(alone.normal[0], t.normal[0]);

@@ -13,13 +13,13 @@ namespace {
 using testing::Dice;
 using testing::Soup;
 
-constexpr double behind = 0.05;
+constexpr double deepest = 0.05;
 
 /// Distance and direction of each feature that is nearer than `range`, from a list of those that may be.
 std::map<std::int32_t, std::array<double, 4>> touched(const Surface& surface, const NearFeatures& near, const Vec3& x,
                                                       double range) {
   std::map<std::int32_t, std::array<double, 4>> found;
-  const Table table = surface.features().table(behind);
+  const Table table = surface.features().table(deepest);
   for (std::size_t k = 0; k < near.feature.size(); ++k) {
     const Touch at =
         touch(table, near.feature[k], near.triangles.data(), near.begin(k), near.end[k], x.data(), far_away);
@@ -43,10 +43,10 @@ TEST(NearMemory, FindsWhatASearchFinds) {
         const double range = 0.15 + 0.05 * dice(0.0, 1.0);  // as margins go with speed
         const double stride = i % 3 == 0 ? 0.05 : 0.003;
         x[i] = plus(x[i], dice.point(-stride, stride));
-        surface.near(x[i], range, behind, searched);
+        surface.near(x[i], range, deepest, searched);
         const auto expected = touched(surface, searched, x[i], range);
         // Ids as a rank has them, some at one place of the memory.
-        const NearFeatures& got = memory.near(surface, static_cast<GlobalId>(7 * i), x[i], range, 0.03, behind);
+        const NearFeatures& got = memory.near(surface, static_cast<GlobalId>(7 * i), x[i], range, 0.03, deepest);
         ASSERT_EQ(touched(surface, got, x[i], range), expected);
         EXPECT_TRUE(std::ranges::is_sorted(got.feature));
         some += expected.size();
@@ -61,7 +61,7 @@ TEST(NearMemory, OfWhatIsFarTakesNoMemory) {
   NearMemory memory;
   for (int making = 0; making < 3; ++making) {
     memory.begin();
-    EXPECT_TRUE(memory.near(surface, 1, {0.5, 0.5, 0.5}, 0.1, 0.01, behind).feature.empty());
+    EXPECT_TRUE(memory.near(surface, 1, {0.5, 0.5, 0.5}, 0.1, 0.01, deepest).feature.empty());
   }
   EXPECT_EQ(memory.bytes(), 0U);
 }
