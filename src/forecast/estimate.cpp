@@ -35,7 +35,7 @@ constexpr double program_bytes = 51e6;
 constexpr double growth = 1.1;
 constexpr std::array<double, 2> pairs_a_particle{2.7, 3.4};  // listed, of discs, of spheres
 constexpr double pair_bytes = 2.0 * sizeof(LocalIndex);
-constexpr double held = 1.25;
+constexpr double held = 1.4;
 constexpr std::array<double, 2> contacts_of_one{4.5, 5.2};  // of a disc, of a sphere
 constexpr double row_bytes = 350.0, contact_row_bytes = 250.0;
 
