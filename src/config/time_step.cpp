@@ -77,6 +77,8 @@ double contact_duration(double reduced_mass, double reduced_radius, double reduc
   return 2.87 * (std::isfinite(x) && x > 0.0 ? elementary::fifth_root(x) : x);
 }
 
+double fall_time(const Input& in) { return std::sqrt(2.0 * in.layers.thickness / in.jamming.gravity); }
+
 double impact_speed(const Input& in, double drop) {
   const double speed = norm(in.layers.velocity);
   return std::sqrt(2.0 * in.jamming.gravity * drop + speed * speed);

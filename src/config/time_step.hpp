@@ -27,6 +27,9 @@ namespace packmpi::input {
 /// The same bits on any machine.
 [[nodiscard]] double contact_duration(double reduced_mass, double reduced_radius, double reduced_modulus, double speed);
 
+/// [s] of a free fall through a layer's region: what presets measure times by. Precondition: there is gravity.
+[[nodiscard]] double fall_time(const Input& in);
+
 /// Speed [m/s] of a particle that has fallen `drop` [m] from where it was inserted; eq. (23) wants one.
 [[nodiscard]] double impact_speed(const Input& in, double drop);
 

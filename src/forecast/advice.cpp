@@ -7,6 +7,7 @@
 
 #include "forecast/estimate.hpp"
 #include "input/fidelity.hpp"
+#include "input/time_step.hpp"
 #include "run/settle.hpp"
 #include "scene/mixture.hpp"
 
@@ -88,7 +89,7 @@ void warn_of_length(const scene::Scene& scene, Warnings& warnings) {
   const double layers = static_cast<double>(scene::expected_layers(scene, scene::expected_fraction(scene).value));
   const double steps = layers * static_cast<double>(run::steps_of(scene, run::Part::layer));
   if (!(gravity > 0.0) || steps < many_steps) return;
-  const double fall = std::sqrt(2.0 * scene.in.layers.thickness / gravity);
+  const double fall = input::fall_time(scene.in);
   const double falls = scene.in.layers.duration / fall;
   const double softer = scene::modulus_for(scene, small_overlap, modulus);
   double left = steps;  // of steps, which are as long as E^-0.4

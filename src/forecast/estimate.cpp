@@ -11,6 +11,7 @@
 #include "forecast/advice.hpp"
 #include "forecast/probe.hpp"
 #include "geometry/volume.hpp"
+#include "input/time_step.hpp"
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "report/fields.hpp"
@@ -331,8 +332,7 @@ std::int64_t final_steps(const scene::Scene& scene) {
   if (!(scene.relaxation > 0.0)) return 0;
   const std::int64_t own = run::steps_of(scene, run::Part::relaxation);
   if (!(scene.wait > 0.0) || !scene.features.memory || !(scene.in.jamming.gravity > 0.0)) return own;
-  const double fall = std::sqrt(2.0 * scene.in.layers.thickness / scene.in.jamming.gravity);
-  const double usual = (scene.sizes.ratio() > wide ? falls_if_wide : falls) * fall;
+  const double usual = (scene.sizes.ratio() > wide ? falls_if_wide : falls) * input::fall_time(scene.in);
   return std::clamp(scene::steps_in(usual, scene.time_step), own, own + scene::steps_in(scene.wait, scene.time_step));
 }
 

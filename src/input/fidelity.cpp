@@ -29,8 +29,6 @@ struct Protocol {
 };
 
 // Times of presets are in t, that of a fall through a layer's region, speeds in sqrt(2 g h_0) = g t.
-double fall(const Input& in) { return std::sqrt(2.0 * in.layers.thickness / in.jamming.gravity); }
-
 bool is_draft(const Input& in) { return in.fidelity == "draft"; }
 bool remembers(const Input& in) { return in.contact.tangential == Tangential::mindlin; }
 bool flat(const Input& in) { return in.container.dimension == 2; }
@@ -68,7 +66,7 @@ struct Flat {
 
 Protocol in_plane(const Input& in, const Flat& flat) {
   const bool soft = is_draft(in) || in.dynamics.rotation;  // soft layers without spin settle too densely
-  const double t = fall(in), layers = in.container.size.back() / in.layers.thickness;
+  const double t = fall_time(in), layers = in.container.size.back() / in.layers.thickness;
   return {.duration = flat.duration * t,
           .speed = flat.speed * in.jamming.gravity * t,
           .window = flat.window,
@@ -112,7 +110,7 @@ double over_paper(const Input& in, const Creep& creep, double diameter) {
 Protocol in_space(Input in, const Spatial& rule) {
   constexpr double settled_fraction = 0.6, paper = 1e-3, longest = 1.5, least_relaxation = 0.95;
   constexpr int most_window = 1000;
-  const double t = fall(in), h = in.layers.thickness, height = in.container.size.back();
+  const double t = fall_time(in), h = in.layers.thickness, height = in.container.size.back();
   const RadiusRange radii = radius_range(in.particles.radius);
   const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
   const double rise = h * in.layers.fraction / settled_fraction;  // of the bed by a layer
@@ -151,7 +149,7 @@ struct Holding {
 
 Protocol with_memory(const Input& in, const Holding& rule) {
   constexpr double settled_fraction = 0.6, most_window = 1000.0, least_window = 4.0;
-  const double t = fall(in), h = in.layers.thickness;
+  const double t = fall_time(in), h = in.layers.thickness;
   const RadiusRange radii = radius_range(in.particles.radius);
   const double diameter = 2.0 * std::sqrt(radii.smallest) * std::sqrt(radii.largest);
   const double rise = h * in.layers.fraction / settled_fraction;  // of the bed by a layer

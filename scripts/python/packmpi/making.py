@@ -60,7 +60,7 @@ def run(scene: Union[Scene, Source], comm: Optional[Any] = None, *, folder: Unio
     restart      with a folder: "auto" goes on from the newest checkpoint there, a path from that one
     max_hours    with a folder: write a checkpoint and raise Problem (code 75) before so much wall time
     gather       all particles on rank 0, sorted by id, and none on the others; else each rank has its share
-    progress     called with a Progress every `output.log_every` of simulated time and at the ends of layers; what it raises ends the run on all
+    progress     called with a Progress at each row of the step log (`output.log_every`) and at the ends of layers; what it raises ends the run on all
                  ranks. True: one line on stderr, rewritten
 
     Returns a Pack; one that missed targets, too: Pack.missed. Raises SceneError or Problem, on all ranks. Ctrl-C ends it.
