@@ -1,5 +1,8 @@
 #include "comm/session.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <mpi.h>
 #include <petscsys.h>
 
@@ -44,6 +47,17 @@ void prepare_single_process() {
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
 }
 
+/// Gives memory that is free back to the system. SuperLU_DIST, which comes with PETSc, forbids it as it is loaded, for
+/// the whole program: what a large array has had is then the program's until it ends.
+void give_memory_back() {
+#ifdef __GLIBC__
+  constexpr int large = 4 << 20;  // [bytes] what is smaller comes and goes too often to be asked for each time
+  mallopt(M_MMAP_MAX, 65536);     // glibc's own number
+  mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_TRIM_THRESHOLD, 2 * large);
+#endif
+}
+
 }  // namespace
 
 bool launched() {
@@ -72,6 +86,7 @@ Session::Session(int& argc, char**& argv, PetscRanks petsc) {
   MPI_Initialized(&running);
   if (running == 0) {
     if (!launched()) prepare_single_process();
+    give_memory_back();
     MPI_Init(&argc, &argv);
     owns_mpi_ = true;
   }
