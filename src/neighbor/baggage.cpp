@@ -7,19 +7,25 @@
 namespace packmpi::neighbor {
 
 void Baggage::clear() {
-  release(head_);
-  release(items_);
+  packmpi::release(head_);
+  if (pieces_.size() > 1) pieces_.resize(1);  // which is there at once for the next rebuild of a small bed
+  size_ = 0;
+}
+
+void Baggage::release() {
+  clear();
+  packmpi::release(pieces_);
 }
 
 void Baggage::add(LocalIndex slot, GlobalId partner, const double* values, std::size_t step, const double* signs) {
   std::int64_t& head = head_[static_cast<std::size_t>(slot)];
-  const std::size_t at = items_.size();
-  resize_tightly(items_, at + each_);
-  double* out = items_.data() + at;
+  if (size_ == pieces_.size() * piece) pieces_.push_back(std::make_unique_for_overwrite<double[]>(piece * each_));
+  const auto at = static_cast<std::int64_t>(size_++);
+  double* out = item(at);
   *out++ = std::bit_cast<double>(partner);
   *out++ = std::bit_cast<double>(head);
   for (std::size_t c = 0; c < doubles_; ++c) *out++ = signs[c] * values[c * step];
-  head = static_cast<std::int64_t>(at);
+  head = at;
 }
 
 void Baggage::keep(std::span<const LocalIndex> kept) {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,9 @@ class Baggage {
     std::span<const double> values;
   };
 
-  void clear();  ///< frees the memory
-  [[nodiscard]] bool empty() const noexcept { return items_.empty(); }
-  [[nodiscard]] std::size_t size() const noexcept { return items_.size() / each_; }
-  void reserve(std::size_t contacts) { items_.reserve(contacts * each_); }
+  void clear();    ///< frees the memory but for the first piece
+  void release();  ///< frees the memory
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   /// Lists for `count` particles; those there are stay.
   void fit(LocalIndex count) { resize_tightly(head_, static_cast<std::size_t>(count), none); }
 
@@ -62,15 +62,22 @@ class Baggage {
     const auto at = static_cast<std::size_t>(slot);
     return at < head_.size() ? head_[at] : none;  // inserted since: none
   }
-  [[nodiscard]] const double* item(std::int64_t k) const noexcept { return &items_[static_cast<std::size_t>(k)]; }
+  static constexpr std::size_t piece = std::size_t{1} << 17;  // items that are allocated together
+  [[nodiscard]] double* item(std::int64_t k) const noexcept {
+    const auto at = static_cast<std::size_t>(k);
+    return pieces_[at / piece].get() + at % piece * each_;
+  }
   static GlobalId partner(const double* item) noexcept { return std::bit_cast<GlobalId>(item[0]); }
   static std::int64_t next(const double* item) noexcept { return std::bit_cast<std::int64_t>(item[1]); }
 
   std::size_t doubles_;
   std::size_t each_;                 // doubles of an item
   std::vector<double> as_they_are_;  // ones
-  std::vector<std::int64_t> head_;   // by slot, where its first item begins
-  std::vector<double> items_;        // partner and place of the next one, bit by bit, then the stored doubles: one line
+  std::vector<std::int64_t> head_;   // by slot, its first item
+  // An item: partner and the number of the next one, bit by bit, then the stored doubles. In pieces, so that more of
+  // them ask for no second room beside the first.
+  std::vector<std::unique_ptr<double[]>> pieces_;
+  std::size_t size_ = 0;
 };
 
 template <class See>

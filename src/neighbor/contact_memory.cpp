@@ -28,7 +28,6 @@ void ContactMemory::begin_pick_up(LocalIndex owned) {
   listed_ = false;
   baggage_.clear();
   baggage_.fit(owned);
-  baggage_.reserve(expected_);
 }
 
 void ContactMemory::end_pick_up(const WallList& walls) {
@@ -94,7 +93,6 @@ void ContactMemory::lay_down(const particles::Store& store, const PairList& pair
   lay(pair_values_, entries);
   lay(wall_values_, contacts);
   listed_ = true;
-  expected_ = baggage_.size() + baggage_.size() / 16;
   if (baggage_.empty()) return;
   for (std::size_t p = 0; p < entries; ++p) {
     const LocalIndex i = pairs.first[p], j = pairs.second[p];

@@ -96,7 +96,6 @@ class ContactMemory {
   std::vector<double> pair_values_, wall_values_;
   LocalIndex owned_ = 0;             // when the lists were laid down
   std::vector<GlobalId> ghost_ids_;  // likewise: the store drops its ghosts before we are asked
-  std::size_t expected_ = 0;         // contacts of the next baggage
   bool listed_ = false;              // in the lists; else in the baggage
   Baggage baggage_;
 };

@@ -49,10 +49,7 @@ void Frozen::take(particles::Store& from, GlobalId below, Baggage* contacts) {
 void Frozen::give_back(particles::Store& to, Baggage* contacts) {
   to.set_ghosts(0);
   store_.set_ghosts(0);
-  if (contacts != nullptr) {
-    contacts->fit(to.owned());
-    contacts->reserve(contacts->size() + baggage_.size());
-  }
+  if (contacts != nullptr) contacts->fit(to.owned());
   constexpr LocalIndex pieces = 16;  // what is given back is freed piece by piece: no particle is held twice for long
   const LocalIndex piece = store_.owned() / pieces + 1;
   while (store_.owned() > 0) {
@@ -62,7 +59,7 @@ void Frozen::give_back(particles::Store& to, Baggage* contacts) {
     store_.keep_first(last);
     if (last % piece == 0) store_.give_back_rest();
   }
-  baggage_.clear();
+  baggage_.release();
   store_ = particles::Store(store_.layout());
   release(start_);
   in_use_ = false;
