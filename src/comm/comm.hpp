@@ -114,16 +114,6 @@ void agree_on(const Comm& comm, Action&& action);
 /// may wait for this one for ever, and it ends the job with one line (abort_all). Cost: a communicator.
 [[nodiscard]] Failure end_together(const Comm& comm, const std::function<void()>& action, double patience = 2.0);
 
-/// Collective. The sum of all ranks' terms, correctly independent of their order and of the number of ranks: each term
-/// is rounded to a multiple of 2^-96 of the power of two above the largest magnitude and added in integers; the
-/// total is rounded to double once (twice where it is subnormal). No terms, or zeros only: +0.
-/// NaN or infinity in any term gives NaN on every rank; a total beyond double's range gives infinity.
-/// Errors: Error(numerical_failure) on every rank for more than 2^30 terms on any. Cost: two reductions.
-[[nodiscard]] double exact_sum(const Comm& comm, std::span<const double> terms);
-/// The same for several sums at once: terms[k] are the terms of sum k; as many sums on every rank. Cost: two reductions
-/// in all.
-[[nodiscard]] std::vector<double> exact_sums(const Comm& comm, std::span<const std::vector<double>> terms);
-
 /// Collective. Sends each parcel to its rank and returns what the others sent here, sorted by source rank.
 /// Nobody needs to know beforehand who sends to him (non-blocking consensus, Hoefler et al. 2010); no O(ranks) arrays.
 /// A parcel to oneself is delivered, an empty one too. At most one parcel per destination (asserted), of any length:

@@ -1,98 +1,70 @@
-// Sums of doubles whose bits depend on no order: integers are added, and integers commute.
+#include "comm/exact_sum.hpp"
+
 #include <algorithm>
-#include <bit>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
-#include "comm/comm.hpp"
-#include "comm/limbs.hpp"
-
 namespace packmpi::comm {
-namespace {
 
-constexpr int fraction_bits = 96;  // 2^30 terms of 2^96 stay below 2^127 on a rank; all ranks together need more
-constexpr std::size_t max_terms = std::size_t{1} << 30U;
-constexpr std::size_t words_per_sum = limb_count + 1;  // and the number of ranks with too many terms
-
-double magnitude(std::span<const double> terms) {
-  double largest = 0.0;
-  for (const double term : terms) {
-    if (!std::isfinite(term)) return std::numeric_limits<double>::quiet_NaN();
-    largest = std::max(largest, std::fabs(term));
+void ExactSum::settle() noexcept {
+  std::int64_t carry = 0;
+  for (std::size_t k = 0; k + 1 < limb_count; ++k) {
+    const std::int64_t all = words_[k] + carry;
+    words_[k] = all & 0xffffffff;
+    carry = all >> 32;
   }
-  return largest;
+  words_[limb_count - 1] += carry;
+  unsettled_ = 0;
 }
 
-/// term = mantissa * 2^exponent, |mantissa| < 2^53.
-struct Parts {
-  std::int64_t mantissa;
-  int exponent;
-};
-Parts parts_of(double term) {  // std::frexp is a call, and a row of the step log sums some ten numbers a particle
-  const auto bits = std::bit_cast<std::uint64_t>(term);
-  const auto biased = static_cast<int>(bits >> 52U & 0x7ffU);
-  const auto fraction = static_cast<std::int64_t>(bits & 0xfffffffffffffU);
-  const std::int64_t mantissa = biased == 0 ? fraction : fraction | std::int64_t{1} << 52U;
-  return {std::signbit(term) ? -mantissa : mantissa, std::max(biased, 1) - 1075};
+double ExactSum::round() noexcept {
+  settle();
+  if (words_[limb_count] > 0) return std::numeric_limits<double>::quiet_NaN();
+  const bool negative = words_[limb_count - 1] < 0;
+  ExactSum size;
+  for (std::size_t k = 0; k < limb_count; ++k) size.words_[k] = negative ? -words_[k] : words_[k];
+  size.settle();
+  std::size_t top = limb_count - 1;
+  while (top > 0 && size.words_[top] == 0) --top;
+  const std::size_t last = top < 3 ? 0 : top - 3;  // 97 bits or more, or all there are
+  __extension__ using Uint128 = unsigned __int128;
+  Uint128 bits = 0;
+  for (std::size_t k = top + 1; k > last; --k) bits = bits << 32U | static_cast<Uint128>(size.words_[k - 1]);
+  // The last bit stands for all below it: rounding sees it.
+  if (std::any_of(size.words_.begin(), size.words_.begin() + static_cast<std::ptrdiff_t>(last),
+                  [](std::int64_t limb) { return limb != 0; }))
+    bits |= 1U;
+  const double sum = std::ldexp(static_cast<double>(bits), 32 * static_cast<int>(last) - 1074);
+  return negative ? -sum : sum;
 }
 
-/// term / 2^(exponent - 96), rounded to the nearest integer, halves away from zero; |term| < 2^exponent.
-Int128 fixed(double term, int exponent) {
-  const Parts parts = parts_of(term);
-  const int shift = parts.exponent - (exponent - fraction_bits);
-  if (shift >= 0) return Int128{parts.mantissa} * (Int128{1} << shift);
-  if (shift < -54) return 0;
-  const std::int64_t half = std::int64_t{1} << (-shift - 1);
-  const std::int64_t rounded = (std::abs(parts.mantissa) + half) >> -shift;
-  return parts.mantissa < 0 ? -rounded : rounded;
-}
-
-Int128 local_sum(std::span<const double> terms, double largest) {
-  if (!(largest > 0.0) || terms.size() > max_terms) return 0;  // not needed, or refused below
-  int exponent = 0;
-  (void)std::frexp(largest, &exponent);
-  Int128 sum = 0;
-  for (const double term : terms) sum += fixed(term, exponent);
-  return sum;
-}
-
-double total(std::span<const std::int64_t> limbs, double largest) {
-  if (std::isnan(largest)) return largest;
-  int exponent = 0;
-  (void)std::frexp(largest, &exponent);
-  return to_double(limbs, exponent - fraction_bits);
-}
-
-}  // namespace
-
-std::vector<double> exact_sums(const Comm& comm, std::span<const std::vector<double>> terms) {
-  const std::size_t n = terms.size();
-  std::vector<double> largest(n);
-  for (std::size_t k = 0; k < n; ++k) largest[k] = magnitude(terms[k]);
-  comm.max(std::span(largest));
-
-  std::vector<std::int64_t> words(n * words_per_sum);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto mine = std::span(words).subspan(k * words_per_sum, words_per_sum);
-    split(local_sum(terms[k], largest[k]), mine);
-    mine[limb_count] = terms[k].size() > max_terms ? 1 : 0;
+std::vector<double> exact_sums(const Comm& comm, std::span<ExactSum> sums) {
+  std::vector<std::int64_t> words;
+  words.reserve(sums.size() * std::tuple_size_v<ExactSum::Words>);
+  for (ExactSum& sum : sums) {
+    sum.settle();
+    words.insert(words.end(), sum.words().begin(), sum.words().end());
   }
   comm.sum(std::span(words));
-
-  std::vector<double> sums(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto all = std::span(words).subspan(k * words_per_sum, words_per_sum);
-    if (all[limb_count] > 0)
-      fail_together(comm, ExitCode::numerical_failure, "an exact sum of more than 2^30 terms of a rank");
-    sums[k] = total(all.first(limb_count), largest[k]);
+  std::vector<double> totals;
+  auto at = words.begin();
+  for (std::size_t k = 0; k < sums.size(); ++k, at += std::tuple_size_v<ExactSum::Words>) {
+    ExactSum all;
+    std::copy_n(at, all.words().size(), all.words().begin());
+    totals.push_back(all.round());
   }
-  return sums;
+  return totals;
+}
+
+double exact_sum(const Comm& comm, const ExactSum& sum) {
+  ExactSum own = sum;
+  return exact_sums(comm, std::span(&own, 1))[0];
 }
 
 double exact_sum(const Comm& comm, std::span<const double> terms) {
-  const std::vector<double> only(terms.begin(), terms.end());
-  return exact_sums(comm, std::span(&only, 1))[0];
+  ExactSum sum;
+  for (const double term : terms) sum.add(term);
+  return exact_sum(comm, sum);
 }
 
 }  // namespace packmpi::comm

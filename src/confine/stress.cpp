@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "comm/exact_sum.hpp"
 #include "dynamics/contact_law.hpp"
 #include "observe/touch.hpp"
 #include "scene/mixture.hpp"
@@ -41,15 +42,15 @@ double volume(const scene::Scene& scene) {
 Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                      const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
   const geometry::Container& vessel = scene.container;
-  std::vector<std::vector<double>> forces(2 * axes + 1);  // the last: on round walls
+  std::array<comm::ExactSum, 2 * axes + 1> forces;  // the last: on round walls
   const auto add = [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
     const auto number = static_cast<std::size_t>(wall);
     if (wall == neighbor::Wall::inner || number >= geometry::most_surfaces) return;
     const Vec3 force = dynamics::wall_contact(scene, law, store, i, at).force;  // friction has no normal part
-    if (number >= geometry::most_planes) return forces.back().push_back(-dot(force, at.normal));
+    if (number >= geometry::most_planes) return forces.back().add(-dot(force, at.normal));
     const geometry::Plane plane = vessel.plane(wall);
     const auto axis = static_cast<std::size_t>(plane.axis);
-    forces[2 * axis + (plane.sign > 0.0 ? 1 : 0)].push_back(-plane.sign * force[axis]);
+    forces[2 * axis + (plane.sign > 0.0 ? 1 : 0)].add(-plane.sign * force[axis]);
   };
   observe::each_touching_wall(store, vessel, neighborhood.walls(), add);
   const std::vector<double> sums = comm::exact_sums(comm, forces);
@@ -70,12 +71,12 @@ Boundary on_boundary(const comm::Comm& comm, const particles::Store& store, cons
 
 Vec3 on_high_walls(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                    const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
-  std::vector<std::vector<double>> forces(axes);
+  std::array<comm::ExactSum, axes> forces;
   const auto add = [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
     if (static_cast<std::size_t>(wall) >= geometry::most_planes) return;
     const geometry::Plane plane = scene.container.plane(wall);
     const auto axis = static_cast<std::size_t>(plane.axis);
-    if (plane.sign > 0.0) forces[axis].push_back(-dynamics::wall_contact(scene, law, store, i, at).force[axis]);
+    if (plane.sign > 0.0) forces[axis].add(-dynamics::wall_contact(scene, law, store, i, at).force[axis]);
   };
   observe::each_touching_wall(store, scene.container, neighborhood.walls(), add);
   const std::vector<double> sums = comm::exact_sums(comm, forces);
@@ -92,7 +93,7 @@ Stress of_contacts(const comm::Comm& comm, const particles::Store& store, const 
   const neighbor::PairList& pairs = neighborhood.pairs();
   const dynamics::StoredView of_pairs = dynamics::stored_pairs(neighborhood);
   const dynamics::StoredView of_walls = dynamics::stored_walls(neighborhood);
-  std::vector<std::vector<double>> terms(axes + 1);
+  std::array<comm::ExactSum, axes + 1> terms;
   const auto ids = store.ids();
   for (std::size_t p = 0; p < pairs.first.size(); ++p) {
     const LocalIndex i = pairs.first[p], j = pairs.second[p];
@@ -102,18 +103,18 @@ Stress of_contacts(const comm::Comm& comm, const particles::Store& store, const 
     const double reach = store.radius(i) + store.radius(j);
     if (!(dot(l, l) < reach * reach)) continue;
     const Vec3 f = dynamics::pair_contact(scene, law, store, i, j, of_pairs, static_cast<std::int64_t>(p)).force;
-    for (std::size_t a = 0; a < axes; ++a) terms[a].push_back(-l[a] * f[a]);
+    for (std::size_t a = 0; a < axes; ++a) terms[a].add(-l[a] * f[a]);
   }
   const auto touch = [&](std::int64_t entry, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
     const Vec3 f = dynamics::wall_contact(scene, law, store, i, at, of_walls, entry).force;
-    for (std::size_t a = 0; a < axes; ++a) terms[a].push_back(-at.distance * at.normal[a] * f[a]);
+    for (std::size_t a = 0; a < axes; ++a) terms[a].add(-at.distance * at.normal[a] * f[a]);
     const double height = store.position(i)[vertical] + at.distance * at.normal[vertical];  // of where it touches
-    terms[axes].push_back(-height * f[vertical]);
+    terms[axes].add(-height * f[vertical]);
   };
   observe::each_touching_wall(store, scene.container, neighborhood.walls(), touch);
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double weight = scene::mass_of(scene, store, i) * scene.in.jamming.gravity;
-    terms[axes].push_back(weight * store.position(i)[vertical]);
+    terms[axes].add(weight * store.position(i)[vertical]);
   }
   const std::vector<double> sums = comm::exact_sums(comm, terms);
   Stress result;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "comm/exact_sum.hpp"
 #include "dynamics/contact_law.hpp"
 #include "dynamics/kernel.hpp"
 #include "dynamics/near_field.hpp"
@@ -42,6 +43,15 @@ class Sums {
   std::vector<std::int64_t> sums_;
 };
 
+struct Magnitudes {
+  comm::ExactSum sum;
+  std::int64_t count = 0;
+  void add(double magnitude) {
+    sum.add(magnitude);
+    ++count;
+  }
+};
+
 double length(const Vec3& f) { return std::sqrt(dot(f, f)); }
 
 /// Weight and drag.
@@ -59,26 +69,25 @@ void add_body_forces(const particles::Store& store, const scene::Scene& scene, S
 
 /// Each touching pair acts on both its ends that are owned here; its magnitude is counted once over all ranks.
 void add_pairs(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::Neighborhood& neighborhood, GlobalId frozen_below, Sums& sums,
-               std::vector<double>& magnitudes) {
+               const neighbor::Neighborhood& neighborhood, GlobalId frozen_below, Sums& sums, Magnitudes& magnitudes) {
   const dynamics::StoredView stored = dynamics::stored_pairs(neighborhood);
   each_touching(store, scene.container, neighborhood.pairs(),
                 [&](std::int64_t entry, LocalIndex i, LocalIndex j, double) {
                   const Vec3 force = dynamics::pair_contact(scene, law, store, i, j, stored, entry).force;
                   sums.add(i, force);
                   if (j < store.owned()) sums.add(j, force, -1);
-                  if (is_counted_here(store, i, j, frozen_below)) magnitudes.push_back(length(force));
+                  if (is_counted_here(store, i, j, frozen_below)) magnitudes.add(length(force));
                 });
 }
 
 void add_walls(const particles::Store& store, const scene::Scene& scene, const dynamics::Law& law,
-               const neighbor::Neighborhood& neighborhood, Sums& sums, std::vector<double>& magnitudes) {
+               const neighbor::Neighborhood& neighborhood, Sums& sums, Magnitudes& magnitudes) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   each_touching_wall(store, scene.container, neighborhood.walls(),
                      [&](std::int64_t entry, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
                        const Vec3 force = dynamics::wall_contact(scene, law, store, i, at, stored, entry).force;
                        sums.add(i, force);
-                       magnitudes.push_back(length(force));
+                       magnitudes.add(length(force));
                      });
 }
 
@@ -91,13 +100,14 @@ double unbalanced_force(const comm::Comm& comm, const particles::Store& store, c
   if (scene.features.near_field) {
     in_range = dynamics::add_near_field(scene, store, neighborhood.near_pairs(), sums.accumulators());
   }
-  std::array<std::vector<double>, 2> terms;  // on particles, of contacts
+  Magnitudes on_particles, of_contacts;
   add_body_forces(store, scene, sums);
-  add_pairs(store, scene, law, neighborhood, frozen_below, sums, terms[1]);
-  add_walls(store, scene, law, neighborhood, sums, terms[1]);
-  for (LocalIndex i = 0; i < store.owned(); ++i) terms[0].push_back(sums.magnitude(i));
-  std::array<std::int64_t, 3> counts{std::ssize(terms[0]), std::ssize(terms[1]), in_range ? 0 : 1};
+  add_pairs(store, scene, law, neighborhood, frozen_below, sums, of_contacts);
+  add_walls(store, scene, law, neighborhood, sums, of_contacts);
+  for (LocalIndex i = 0; i < store.owned(); ++i) on_particles.add(sums.magnitude(i));
+  std::array<std::int64_t, 3> counts{on_particles.count, of_contacts.count, in_range ? 0 : 1};
   comm.sum(counts);
+  std::array terms{on_particles.sum, of_contacts.sum};
   const std::vector<double> totals = comm::exact_sums(comm, terms);
   if (counts[2] > 0) return std::numeric_limits<double>::quiet_NaN();
   if (totals[0] == 0.0) return 0.0;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "comm/exact_sum.hpp"
 #include "dynamics/contact_law.hpp"
 #include "observe/analysis.hpp"
 #include "observe/measure.hpp"
@@ -7,8 +8,8 @@
 namespace packmpi::observe {
 
 Forces forces(const Specimen& pack) {
-  constexpr double width = 0.1, most = 8.0;    // of the mean force
-  std::vector<std::vector<double>> terms(19);  // fabric, stress, normal force
+  constexpr double width = 0.1, most = 8.0;  // of the mean force
+  std::vector<comm::ExactSum> terms(19);     // fabric, stress, normal force
   std::vector<double> normals;
   const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   for (const ContactForce& c :
@@ -20,11 +21,11 @@ Forces forces(const Specimen& pack) {
     for (std::size_t a = 0; a < 3; ++a) {
       normal -= c.force[a] * l[a] / length;
       for (std::size_t b = 0; b < 3; ++b) {
-        terms[3 * a + b].push_back(l[a] * l[b] / (length * length));
-        terms[9 + 3 * a + b].push_back(-l[a] * c.force[b]);
+        terms[3 * a + b].add(l[a] * l[b] / (length * length));
+        terms[9 + 3 * a + b].add(-l[a] * c.force[b]);
       }
     }
-    terms[18].push_back(normal);
+    terms[18].add(normal);
     normals.push_back(normal);
   }
   const std::vector<double> sums = comm::exact_sums(pack.comm, terms);

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "comm/exact_sum.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
 
@@ -10,7 +11,8 @@ namespace {
 
 /// Sums of this rank over the pairs it counts.
 struct PairSums {
-  std::vector<double> overlaps;  // over the smaller radius, one for each pair counted here
+  comm::ExactSum overlaps;  // over the smaller radius
+  std::int64_t counted = 0;
   double largest = 0.0;
   std::int64_t ends = 0;  // owned ends of touching pairs
 };
@@ -26,8 +28,10 @@ PairSums count_pairs(const particles::Store& store, const geometry::Container& b
     if (both_owned) ++of_particle[static_cast<std::size_t>(j)];
     sums.ends += both_owned ? 2 : 1;
     if (is_counted_here(store, i, j, frozen_below)) {
-      sums.overlaps.push_back(overlap / std::min(store.radius(i), store.radius(j)));
-      sums.largest = std::max(sums.largest, sums.overlaps.back());
+      const double relative = overlap / std::min(store.radius(i), store.radius(j));
+      sums.overlaps.add(relative);
+      ++sums.counted;
+      sums.largest = std::max(sums.largest, relative);
     }
   });
   return sums;
@@ -46,15 +50,14 @@ Contacts contacts(const comm::Comm& comm, const particles::Store& store, const s
                      [&](std::int64_t, LocalIndex i, neighbor::Wall, const geometry::Facing& at) {
                        deepest = std::max(deepest, (store.radius(i) - at.distance) / store.radius(i));
                      });
-  std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, static_cast<std::int64_t>(sums.overlaps.size()),
-                                     sums.ends};
+  std::array<std::int64_t, 3> counts{std::int64_t{store.owned()}, sums.counted, sums.ends};
   comm.sum(counts);
   std::array<double, 2> maxima{sums.largest, deepest};
   comm.max(maxima);
   const double total_overlap = comm::exact_sum(comm, sums.overlaps);
   const auto particles = static_cast<double>(std::max<std::int64_t>(counts[0], 1));
   result.pairs = counts[1];
-  result.pairs_here = std::ssize(sums.overlaps);
+  result.pairs_here = sums.counted;
   result.coordination = static_cast<double>(counts[2]) / particles;
   result.mean_overlap = counts[1] > 0 ? total_overlap / static_cast<double>(counts[1]) : 0.0;
   result.max_overlap = maxima[0];

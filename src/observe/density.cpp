@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/volume.hpp"
 #include "observe/measure.hpp"
 
@@ -20,16 +21,13 @@ Density density(const comm::Comm& comm, const particles::Store& store, const sce
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
   const double height = std::min(scene.container.height(), scene.container.lid.value_or(HUGE_VAL));
 
-  const auto count = static_cast<std::size_t>(store.owned());
-  std::array<std::vector<double>, 3> solid{std::vector<double>(count), std::vector<double>(count),
-                                           std::vector<double>(count)};  // below H_d, low, high
+  std::array<comm::ExactSum, 3> solid;  // below H_d, low, high
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const double centre = store.position(i)[vertical];
     const double r = store.radius(i);
-    const auto k = static_cast<std::size_t>(i);
-    solid[0][k] = geometry::volume_below(dimension, r, centre, height);
-    solid[1][k] = geometry::volume_below(dimension, r, centre, bulk.low);
-    solid[2][k] = geometry::volume_below(dimension, r, centre, bulk.high);
+    solid[0].add(geometry::volume_below(dimension, r, centre, height));
+    solid[1].add(geometry::volume_below(dimension, r, centre, bulk.low));
+    solid[2].add(geometry::volume_below(dimension, r, centre, bulk.high));
   }
   const std::vector<double> sums = comm::exact_sums(comm, solid);
   const double volume = scene.container.volume_between(bulk.low, bulk.high);

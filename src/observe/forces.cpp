@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "comm/exact_sum.hpp"
 #include "dynamics/contact_law.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
@@ -95,12 +96,12 @@ double floor_force(const comm::Comm& comm, const particles::Store& store, const 
                    const neighbor::WallList& walls) {
   const dynamics::Law law = dynamics::make_law(scene);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::vector<double> forces;
+  comm::ExactSum forces;
   each_touching_wall(store, scene.container, walls,
                      [&](std::int64_t, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
                        if (wall != neighbor::Wall::floor) return;
                        const double up = dynamics::wall_contact(scene, law, store, i, at).force[vertical];
-                       forces.push_back(up);  // friction on a plane has no part in it
+                       forces.add(up);  // friction on a plane has no part in it
                      });
   return comm::exact_sum(comm, forces);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <voro++/voro++.hh>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/container.hpp"
 #include "geometry/volume.hpp"
 #include "observe/around.hpp"
@@ -54,7 +55,8 @@ LocalDensity local_density(const Specimen& pack) {
   constexpr double width = 0.01;
   const Around around(pack, std::numeric_limits<double>::infinity());
   const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
-  std::vector<std::vector<double>> terms(2);
+  std::array<comm::ExactSum, 2> terms;
+  std::int64_t counted = 0;
   std::vector<std::int64_t> counts(102, 0);  // bins of width, then left out
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     if (!pack.bulk.has(pack.store.position(i)[vertical])) continue;
@@ -64,13 +66,14 @@ LocalDensity local_density(const Specimen& pack) {
       continue;
     }
     const double share = geometry::volume(pack.scene.container.dimension, pack.store.radius(i)) / *cell;
-    terms[0].push_back(share);
-    terms[1].push_back(share * share);
+    ++counted;
+    terms[0].add(share);
+    terms[1].add(share * share);
     ++counts[static_cast<std::size_t>(std::clamp(share / width, 0.0, 100.0))];
   }
   const std::vector<double> sums = comm::exact_sums(pack.comm, terms);
   LocalDensity result;
-  result.counted = pack.comm.sum(std::ssize(terms[0]));
+  result.counted = pack.comm.sum(counted);
   pack.comm.sum(std::span(counts));
   result.left_out = counts.back();
   result.distribution.width = width;

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "comm/exact_sum.hpp"
 #include "observe/kinetic.hpp"
 #include "observe/measure.hpp"
 #include "scene/mixture.hpp"
@@ -9,17 +10,14 @@
 namespace packmpi::observe {
 Motion motion(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene) {
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  const auto count = static_cast<std::size_t>(store.owned());
-  std::array<std::vector<double>, 3> terms{std::vector<double>(count), std::vector<double>(count),
-                                           std::vector<double>(count)};  // kinetic energy, height, mass
-  double fastest = 0.0;                                                  // squared
+  std::array<comm::ExactSum, 3> terms;  // kinetic energy, height, mass
+  double fastest = 0.0;                 // squared
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Kinetic moving = kinetic_over_mass(store, i);
     const double mass = scene::mass_of(scene, store, i);
-    const auto k = static_cast<std::size_t>(i);
-    terms[0][k] = mass * moving.energy();
-    terms[1][k] = store.position(i)[vertical];
-    terms[2][k] = mass;
+    terms[0].add(mass * moving.energy());
+    terms[1].add(store.position(i)[vertical]);
+    terms[2].add(mass);
     fastest = std::max(fastest, moving.squared_speed);
   }
   const std::vector<double> sums = comm::exact_sums(comm, terms);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/container.hpp"
 #include "observe/around.hpp"
 
@@ -91,8 +92,8 @@ Order order(const Specimen& pack) {
   const Around around(pack, first_shell);
   const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   const bool plane = pack.scene.container.dimension == 2;
-  std::vector<std::vector<double>> terms(3);  // 2D: |psi|, its parts; 3D: q4, q6
-  std::array<std::int64_t, 3> counts{};       // counted, fcc, hcp
+  std::vector<comm::ExactSum> terms(3);  // 2D: |psi|, its parts; 3D: q4, q6
+  std::array<std::int64_t, 3> counts{};  // counted, fcc, hcp
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     if (!pack.bulk.has(pack.store.position(i)[vertical])) continue;
     const auto neighbours = around.of(i);
@@ -100,13 +101,13 @@ Order order(const Specimen& pack) {
     ++counts[0];
     if (plane) {
       const auto [real, imaginary] = hexatic(d);
-      terms[0].push_back(std::sqrt(real * real + imaginary * imaginary));
-      terms[1].push_back(real);
-      terms[2].push_back(imaginary);
+      terms[0].add(std::sqrt(real * real + imaginary * imaginary));
+      terms[1].add(real);
+      terms[2].add(imaginary);
     } else {
       const auto [q4, q6] = steinhardt(d);
-      terms[0].push_back(q4);
-      terms[1].push_back(q6);
+      terms[0].add(q4);
+      terms[1].add(q6);
       const Lattice lattice = lattice_of(pack, neighbours, d);
       counts[1] += lattice == Lattice::fcc ? 1 : 0;
       counts[2] += lattice == Lattice::hcp ? 1 : 0;

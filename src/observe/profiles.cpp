@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/volume.hpp"
 #include "observe/analysis.hpp"
 #include "observe/measure.hpp"
@@ -27,7 +28,7 @@ Profile density_profile(const Specimen& pack, int axis) {
   const std::size_t slabs = std::min(bins_in(length, width), most_slabs);
   Profile profile{.from = 0.0, .width = vertical ? width : length / static_cast<double>(slabs), .values = {}};
   const std::size_t bins = bins_in(length, profile.width);
-  std::vector<std::vector<double>> terms(bins);
+  std::vector<comm::ExactSum> terms(bins);
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
@@ -41,7 +42,7 @@ Profile density_profile(const Specimen& pack, int axis) {
       const double low = static_cast<double>(k) * profile.width;
       const double slice = geometry::volume_below(box.dimension, r, x[a], low + profile.width) -
                            geometry::volume_below(box.dimension, r, x[a], low);
-      terms[static_cast<std::size_t>((k + n) % n)].push_back(slice);
+      terms[static_cast<std::size_t>((k + n) % n)].add(slice);
     }
   }
   profile.values = comm::exact_sums(pack.comm, terms);
@@ -64,17 +65,17 @@ Segregation segregation(const Specimen& pack) {
   const double width = diameters_a_layer * 2.0 * pack.scene.sizes.mean();
   Segregation result;
   const std::size_t bins = bins_in(top(pack.comm, pack.store, pack.scene), width);
-  std::vector<std::vector<double>> radii(bins);
+  std::vector<comm::ExactSum> radii(bins);
   std::vector<std::int64_t> counts(bins, 0);
-  std::vector<std::vector<double>> moments(5);  // r, z, r r, z z, r z
+  std::vector<comm::ExactSum> moments(5);  // r, z, r r, z z, r z
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const double z = pack.store.position(i)[vertical];
     const double r = pack.store.radius(i);
     const auto k = static_cast<std::size_t>(std::clamp(z / width, 0.0, static_cast<double>(bins) - 0.5));
-    radii[k].push_back(r);
+    radii[k].add(r);
     ++counts[k];
     const std::array<double, 5> terms{r, z, r * r, z * z, r * z};
-    for (std::size_t m = 0; m < terms.size(); ++m) moments[m].push_back(terms[m]);
+    for (std::size_t m = 0; m < terms.size(); ++m) moments[m].add(terms[m]);
   }
   result.mean_radius = {.from = 0.0, .width = width, .values = comm::exact_sums(pack.comm, radii)};
   pack.comm.sum(std::span(counts));

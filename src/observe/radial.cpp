@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/round_volume.hpp"
 #include "observe/analysis.hpp"
 #include "observe/radial_points.hpp"
@@ -17,14 +18,14 @@ constexpr std::size_t most_shells = 1 << 14;
 std::vector<double> solid_away(const Specimen& pack, Surface surface, const std::vector<double>& margins) {
   const geometry::Container& vessel = pack.scene.container;
   const auto up = static_cast<std::size_t>(vessel.vertical());
-  std::vector<std::vector<double>> terms(margins.size());
+  std::vector<comm::ExactSum> terms(margins.size());
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
     const Vec3 x = pack.store.position(i);
     const double r = pack.store.radius(i);
     if (pack.bulk.low - x[up] >= r || pack.bulk.high - x[up] <= -r) continue;
     const double reach = (vessel.is_polygon() ? vessel.from_sides(x) : vessel.facing(surface, x).distance) + r;
     for (std::size_t k = 0; k < margins.size() && margins[k] < reach; ++k) {
-      terms[k].push_back(geometry::volume_away_from(vessel, surface, margins[k], x, r, pack.bulk.low, pack.bulk.high));
+      terms[k].add(geometry::volume_away_from(vessel, surface, margins[k], x, r, pack.bulk.low, pack.bulk.high));
     }
   }
   return comm::exact_sums(pack.comm, terms);

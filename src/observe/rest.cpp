@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "comm/exact_sum.hpp"
 #include "dynamics/contact_law.hpp"
 #include "observe/measure.hpp"
 #include "observe/touch.hpp"
@@ -18,10 +19,10 @@ Borne vertical_forces(const comm::Comm& comm, const particles::Store& store, con
                       const dynamics::Law& law, const neighbor::Neighborhood& neighborhood) {
   const dynamics::StoredView stored = dynamics::stored_walls(neighborhood);
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  std::array<std::vector<double>, 2> forces;
+  std::array<comm::ExactSum, 2> forces;
   const auto add = [&](std::int64_t entry, LocalIndex i, neighbor::Wall wall, const geometry::Facing& at) {
     forces.at(wall == neighbor::Wall::lid ? 1 : 0)
-        .push_back(dynamics::wall_contact(scene, law, store, i, at, stored, entry).force[vertical]);
+        .add(dynamics::wall_contact(scene, law, store, i, at, stored, entry).force[vertical]);
   };
   each_touching_wall(store, scene.container, neighborhood.walls(), add);
   const std::vector<double> sums = comm::exact_sums(comm, forces);

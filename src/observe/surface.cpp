@@ -4,6 +4,7 @@
 #include <cstring>
 #include <vector>
 
+#include "comm/exact_sum.hpp"
 #include "observe/column_field.hpp"
 #include "observe/measure.hpp"
 

@@ -91,7 +91,7 @@ void Filling::append(const Trial& trial, particles::Store& store) {
     made_of = scene::substance_of(scene_.in, drawn(scene_, region_, trial.particle).component, radius);
   store.add(region_.first_id + static_cast<GlobalId>(trial.particle), centre, radius, layers.velocity, layers.spin,
             made_of);
-  volumes_.push_back(geometry::volume(scene_.container.dimension, radius));
+  volume_.add(geometry::volume(scene_.container.dimension, radius));
 }
 
 }  // namespace packmpi::rsa

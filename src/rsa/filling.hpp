@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "comm/exact_sum.hpp"
 #include "particles/store.hpp"
 #include "rsa/border.hpp"
 #include "rsa/cells.hpp"
@@ -32,7 +33,7 @@ class Filling {
   /// Collective. Throws the volley's trials for every particle that waits and appends the spheres that stay.
   Conflicts::Outcome fire(const Volley& volley, particles::Store& store);
   /// Collective. Of all spheres placed [m3], 2D: [m2].
-  [[nodiscard]] double solid_volume() const { return comm::exact_sum(comm_, volumes_); }
+  [[nodiscard]] double solid_volume() const { return comm::exact_sum(comm_, volume_); }
 
  private:
   struct Waiting {
@@ -55,8 +56,8 @@ class Filling {
   std::array<std::vector<Waiting>, size_classes> share_;  // the classes to come
   std::vector<Waiting> waiting_;                          // of the present class
   std::vector<char> is_free_;                             // of each trial of a volley
-  std::vector<Trial> free_;      // trials that overlap none placed before their volley, in order
-  std::vector<double> volumes_;  // of the spheres placed here
+  std::vector<Trial> free_;  // trials that overlap none placed before their volley, in order
+  comm::ExactSum volume_;    // of the spheres placed here
 };
 
 }  // namespace packmpi::rsa

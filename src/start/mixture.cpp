@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "comm/exact_sum.hpp"
 #include "geometry/volume.hpp"
 #include "scene/mixture.hpp"
 #include "start/fit.hpp"
@@ -44,13 +45,13 @@ control::Mixing mixing_of(const comm::Comm& comm, const scene::Scene& scene, con
   const auto layer_of = [&](GlobalId id) {
     return static_cast<std::size_t>(std::ranges::upper_bound(first_ids, id) - first_ids.begin()) - 1;
   };
-  std::vector<double> extents;
+  comm::ExactSum extents;
   for (std::size_t k = 0; k < rows.id.size(); ++k) {
     const auto component = static_cast<std::size_t>(rows.component[k]);
     ++mixing.counts[layer_of(rows.id[k]) * components + component];
     ++mixing.drawn[component];
     mixing.units[component] += scene::units_of(scene, rows.radius[k]);
-    extents.push_back(geometry::volume(scene.container.dimension, rows.radius[k]));
+    extents.add(geometry::volume(scene.container.dimension, rows.radius[k]));
   }
   comm.sum(std::span(mixing.counts));
   comm.sum(std::span(mixing.drawn));

@@ -1,4 +1,5 @@
 /// Maps over lateral columns: by hand, against the measures of the whole pack, and on any number of ranks.
+#include "comm/exact_sum.hpp"
 #include "observe/column_maps.hpp"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "comm/exact_sum.hpp"
 #include "observe/measure.hpp"
 #include "support/placed_bed.hpp"
 

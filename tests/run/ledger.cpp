@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "comm/exact_sum.hpp"
 #include "observe/measure.hpp"
 #include "rsa/insert.hpp"
 #include "run/bed.hpp"
