@@ -16,8 +16,11 @@ class Holding {
         held_(static_cast<std::size_t>(store.total()), 1),
         of_particle_(static_cast<std::size_t>(store.owned())),
         of_walls_(of_particle_.size(), 0) {
+    std::size_t pairs = 0;  // or room for twice as many
+    each_touching(store, box, neighborhood.pairs(), [&](std::int64_t, LocalIndex, LocalIndex, double) { ++pairs; });
+    touching_.reserve(pairs);
     each_touching(store, box, neighborhood.pairs(), [&](std::int64_t, LocalIndex i, LocalIndex j, double) {
-      touching_.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j)});
+      touching_.push_back({i, j});
     });
     each_touching_wall(store, box, neighborhood.walls(),
                        [&](std::int64_t, LocalIndex i, neighbor::Wall, const geometry::Facing&) {
@@ -55,7 +58,8 @@ class Holding {
 
   void count() {
     std::ranges::fill(of_particle_, 0);
-    for (const auto& [i, j] : touching_) {
+    for (const auto& [first, second] : touching_) {
+      const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
       if (held_[i] == 0 || held_[j] == 0) continue;
       ++of_particle_[i];
       if (j < of_particle_.size()) ++of_particle_[j];
@@ -63,9 +67,9 @@ class Holding {
   }
 
   const neighbor::Neighborhood* neighborhood_;
-  std::vector<std::array<std::size_t, 2>> touching_;  // slots; across a rank border on both ranks, the owned end first
+  std::vector<std::array<LocalIndex, 2>> touching_;   // across a rank border on both ranks, the owned end first
   std::vector<std::int64_t> held_;                    // of owned and ghosts: 0 once taken away
-  std::vector<std::int64_t> of_particle_, of_walls_;  // contacts of the owned
+  std::vector<std::int32_t> of_particle_, of_walls_;  // contacts of the owned
 };
 
 }  // namespace
