@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Makes the large packs and writes their figures into doc/performance.md: input/million.toml with its preset
-and with the paper's, input/cube_million.toml, and input/tall.toml to growing heights.
+and with the paper's, input/ten_million.toml, input/cube_million.toml, and input/tall.toml to growing heights.
 
-usage: scripts/study/large.py [--ranks 2] [--scale 1.0] [--only million paper cube tall] [--picture]
+usage: scripts/study/large.py [--ranks 2] [--scale 1.0] [--only million paper ten cube tall] [--picture]
 
---scale s: the lateral extents of the million and of the cube times s, to try it (0.32: 1e5 spheres). Results are kept in results/large and not
+--scale s: the lateral extents of all but the tall ones times s, to try it (0.32: 1e5 spheres for a million). Results are kept in results/large and not
 made anew while the program and the settings are the same. --picture draws the million (packmpi render).
 """
 import argparse
@@ -18,7 +18,9 @@ from pathlib import Path
 import measuring
 
 PAPER = {"fidelity": "paper", "contact.tangential": "sliding"}
+CASES = ("million", "paper", "ten", "cube", "tall")
 SIDE, HEIGHT = 10.58, 0.48   # [m] of input/million.toml
+TEN = 33.46                  # [m] of input/ten_million.toml
 CUBE = 3.84                  # [m] of input/cube_million.toml
 TALL = (0.25, 0.5, 1.0, 2.0)  # [m]
 TALL_RUNS = 5
@@ -33,6 +35,9 @@ def cases(options):
         runs.append(("million", "million", size, options.ranks))
     if "paper" in options.only:
         runs.append(("paper", "million", {**size, **PAPER}, options.ranks))
+    if "ten" in options.only:
+        side = TEN * options.scale
+        runs.append(("ten", "ten_million", {"container.size": f"[{side:g},{side:g},{HEIGHT}]"}, options.ranks))
     if "cube" in options.only:
         side = CUBE * options.scale
         runs.append(("cube", "cube_million", {"container.size": f"[{side:g},{side:g},{CUBE}]"}, options.ranks))
@@ -93,7 +98,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--scale", type=float, default=1.0)
-    parser.add_argument("--only", nargs="+", choices=("million", "paper", "cube", "tall"), default=("million", "paper", "cube", "tall"))
+    parser.add_argument("--only", nargs="+", choices=CASES, default=CASES)
     parser.add_argument("--picture", action="store_true")
     parser.add_argument("--program", type=Path, default=measuring.ROOT / "build/packmpi")
     parser.add_argument("--results", type=Path, default=measuring.ROOT / "results/large")
@@ -109,6 +114,7 @@ def main():
     made = measuring.made_by("scripts/study/large.py" + ("" if options.scale == 1.0 else f" --scale {options.scale:g}"))
     tables = {"million": lambda: million_table("`\"balanced\"`, as in the file", found["million"]),
               "paper": lambda: million_table("`\"paper\"`", found["paper"]),
+              "ten": lambda: million_table("`\"draft\"`, as in the file", found["ten"]),
               "cube": lambda: million_table("`\"balanced\"`, as in the file", found["cube"]), "tall": lambda: tall_table(found)}
     for name in options.only:   # a block each, of one date and commit
         text = "\n".join([f"{made}.", "", *tables[name]()])
