@@ -90,11 +90,11 @@ static StepReport step(const StepData& data) {
 }
 
 /// The kernels there are, by number: which moving parts, each of which has more than the one before (nothing, friction,
-/// rotation; or with memory friction, rotation, rolling), then graded, periodic, and without memory drag: with it drag
-/// is always in, its coefficient zero where the scene has none. Then those of several components, graded and with drag:
-/// without memory (friction is always in) at rest or with spin, and the three with memory, each periodic or not.
-constexpr int plain_kernels = 24;
-constexpr int one_component = plain_kernels + 12;
+/// rotation; or with memory friction, rotation, rolling), each periodic or not, graded or not. Then those of several
+/// components, graded: without memory (friction is always in) at rest or with spin, and the three with memory, each
+/// periodic or not. Drag is always in, its coefficient zero where the scene has none: a hundredth of a step at most.
+constexpr int of_a_law = 12;
+constexpr int one_component = 2 * of_a_law;
 constexpr int kernel_count = one_component + 10;
 
 constexpr Features mixed_features_of(int own) {
@@ -104,7 +104,7 @@ constexpr Features mixed_features_of(int own) {
   f.memory = moving >= 2;
   f.rolling = moving == 4;
   f.rotation = moving == 1 || moving >= 3;
-  f.friction = f.drag = f.graded = f.mixture = true;
+  f.friction = f.graded = f.mixture = true;
   f.periodic = own % 2 != 0;
   return f;
 }
@@ -113,15 +113,14 @@ constexpr Features features_of(int number) {
   if (number >= one_component) return mixed_features_of(number - one_component);
   Features f;
   f.dimension = PACKMPI_DIMENSION;
-  f.memory = number >= plain_kernels;
-  const int own = f.memory ? 2 * (number - plain_kernels) + 1 : number;
-  const int moving = own / 8;
+  f.memory = number >= of_a_law;
+  const int own = number % of_a_law;
+  const int moving = own / 4;
   f.rolling = f.memory && moving == 2;
   f.rotation = moving >= (f.memory ? 1 : 2);
   f.friction = f.memory || moving >= 1;
-  f.drag = (own & 1) != 0;
-  f.graded = (own & 2) != 0;
-  f.periodic = (own & 4) != 0;
+  f.graded = (own & 1) != 0;
+  f.periodic = (own & 2) != 0;
   f.near_field = false;
   return f;
 }
@@ -139,12 +138,10 @@ Kernel kernel(const Features& f) {
     const int moving = (f.memory ? 2 : 0) + (f.rotation ? 1 : 0) + (f.rolling ? 1 : 0);
     return Kernels::kernels[one_component + 2 * moving + (f.periodic ? 1 : 0)];
   }
-  if (f.memory) {
-    const int moving = f.rolling ? 2 : (f.rotation ? 1 : 0);
-    return Kernels::kernels[plain_kernels + moving * 4 + (f.periodic ? 2 : 0) + (f.graded ? 1 : 0)];
-  }
-  const int moving = f.rotation ? 2 : (f.friction ? 1 : 0);  // spin without friction is rare: friction zero does it
-  return Kernels::kernels[moving * 8 + (f.periodic ? 4 : 0) + (f.graded ? 2 : 0) + (f.drag ? 1 : 0)];
+  const int moving = f.memory
+                         ? (f.rolling ? 2 : (f.rotation ? 1 : 0))
+                         : (f.rotation ? 2 : (f.friction ? 1 : 0));  // spin without friction is rare: friction zero
+  return Kernels::kernels[(f.memory ? of_a_law : 0) + 4 * moving + (f.periodic ? 2 : 0) + (f.graded ? 1 : 0)];
 }
 
 }  // namespace packmpi::dynamics::PACKMPI_KERNEL

@@ -138,7 +138,7 @@ PACKMPI_INLINE void advance(double* record, std::int64_t* sum, const Motion& m, 
   }
   Lanes force = __builtin_convertvector(reinterpret_cast<IntLanes>(load_bits(sum)), Lanes) * m.quantum;
   store_bits(sum, BitLanes{});
-  if constexpr (F.drag) force = force - m.drag * (v - m.fluid_velocity);
+  force = force - m.drag * (v - m.fluid_velocity);
   v = v + m.spin_step * (force * (m.inverse_mass * mass) + m.gravity);
   const Lanes moved = x + m.step * v;
   x = __builtin_shufflevector(moved, x, 0, 1, F.dimension == 3 ? 2 : 6, 7);
