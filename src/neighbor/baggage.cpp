@@ -7,13 +7,13 @@
 namespace packmpi::neighbor {
 
 void Baggage::clear() {
-  packmpi::release(head_);
-  if (pieces_.size() > 1) pieces_.resize(1);  // which is there at once for the next rebuild of a small bed
+  head_.clear();
   size_ = 0;
 }
 
 void Baggage::release() {
   clear();
+  packmpi::release(head_);
   packmpi::release(pieces_);
 }
 

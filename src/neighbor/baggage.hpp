@@ -24,8 +24,8 @@ class Baggage {
     std::span<const double> values;
   };
 
-  void clear();    ///< frees the memory but for the first piece
-  void release();  ///< frees the memory
+  void clear();    ///< keeps the memory: the next rebuild asks for as much
+  void release();  ///< frees it
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   /// Lists for `count` particles; those there are stay.
   void fit(LocalIndex count) { resize_tightly(head_, static_cast<std::size_t>(count), none); }
