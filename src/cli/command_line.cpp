@@ -34,6 +34,9 @@ constexpr std::int64_t most_ranks = 1 << 24;
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;  // 30 years at a microsecond each
 constexpr double least_hours = 1e-9, most_hours = 1e6;
 
+// Of a name, which a variable of the shell that is not set leaves empty.
+std::string not_empty(const std::string& name) { return name.empty() ? "the name is empty" : ""; }
+
 // All of `text` as a number; none if it is not one.
 template <class Number>
 std::optional<Number> read_number(std::string_view text) {
@@ -76,6 +79,7 @@ void declare_scene(CLI::App& app, Request& request) {
 void declare_run(CLI::App& app, Request& request) {
   declare_scene(app, request);
   app.add_option("-o,--output", request.run.folder, "folder for the outputs; made if missing")
+      ->check(not_empty)
       ->capture_default_str()
       ->type_name("FOLDER");
   app.add_flag("--force", request.run.force, "replace outputs that exist");
@@ -157,6 +161,7 @@ void declare_convert(CLI::App& app, Request& request) {
   app.add_option("--to", conversion.format, "format, see below")->required()->type_name("FORMAT");
   app.add_option("-o,--output", conversion.file,
                  "file to write; without it, NAME with the format's ending, beside the pack")
+      ->check(not_empty)
       ->type_name("FILE");
   app.add_option_function<std::string>(
          "--trim",

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -47,6 +48,13 @@ std::string effective_to_show(const input::Input& in) {
          in.effective.substr(end);
 }
 
+// How many ranks the run, and the analysis that it wants, can use.
+std::int64_t ranks_allowed(const scene::Scene& scene, const geometry::ColumnGrid& grid) {
+  const input::Decomposition kind = scene.in.parallel.decomposition;
+  const std::int64_t most = scene::most_ranks(grid, kind);
+  return scene.in.output.analysis ? std::min(most, scene::most_ranks(run::analysis_columns(scene), kind)) : most;
+}
+
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
   const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
@@ -56,7 +64,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         effective_to_show(scene.in), scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx,
-        ny, scene::most_ranks(ownership.grid(), scene.in.parallel.decomposition),
+        ny, ranks_allowed(scene, ownership.grid()),
         scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
     if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));
@@ -100,8 +108,9 @@ int make(const comm::Comm& comm, const scene::Scene& scene, const run::Options& 
     if (options.verbosity == log::Verbosity::verbose) print(report::to_table(record) + "\n");
     const run::Files files = run::files_of(record.name, options);
     std::vector<std::string> written;
-    for (const std::string& file : {files.pack, files.summary, files.log, files.steps, files.analysis})
+    for (const std::string& file : {files.pack, files.summary, files.log, files.steps})
       if (run::is_there(file)) written.push_back(file);
+    if (scene.in.output.analysis) written.push_back(files.analysis);
     print(report::to_lines(record, written));
   }
   return static_cast<int>(met ? ExitCode::done : ExitCode::target_missed);

@@ -230,6 +230,11 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   });
   const Selection selection(*file, scene, request, cut);
   Specimen specimen = survey(comm, *file, selection, names.request, scene);
+  if (cut.on() && specimen.count == 0) {
+    comm::fail_together(
+        comm, ExitCode::bad_input,
+        fmt::format("--cut {}: no particle of {} lies wholly in it; make it larger", request.cut, request.pack));
+  }
   take_springs(comm, *file, springs, specimen);
   write_files(comm, names, format.make(specimen), selection);
   return {names.files(), specimen.count,        specimen.volume,

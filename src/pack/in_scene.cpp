@@ -134,7 +134,7 @@ void check_in_scene(const particles::Store& store, const Histories& histories, c
 }
 
 void check_in_scene(const PackRows& rows, const scene::Scene& scene) {
-  constexpr double highest = 10.0;  // of the height asked for and a layer
+  constexpr double highest = 1e3;  // of the height asked for and a layer: count may ask for more, speeds throw higher
   if (rows.dimension != scene.container.dimension) {
     refuse_scene(fmt::format("it is a pack in {}D of a scene in {}D", rows.dimension, scene.container.dimension));
   }

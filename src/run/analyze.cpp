@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "base/memory.hpp"
 #include "disk/text_file.hpp"
@@ -18,10 +19,8 @@ namespace {
 constexpr double range_in_diameters = 2.5;
 constexpr double shell_in_largest = 1.25;  // largest diameters: the first shell of the largest ones
 
-// The scene with near pairs out to the analysis' range: a near field that is never evaluated.
-scene::Scene reaching_scene(const pack::PackSlice& slice, const std::string& path, double& range) {
-  scene::Scene scene = scene::build(input::parse(slice.scene, path, {}));
-  confine::apply(slice.confined, scene.container);
+// A scene with near pairs out to the analysis' range: a near field that is never evaluated.
+scene::Scene reaching(scene::Scene scene, double& range) {
   range = std::max(range_in_diameters * 2.0 * scene.sizes.mean(), shell_in_largest * 2.0 * scene.sizes.largest());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.container.lateral_axes()); ++axis) {
     // A periodic axis takes three interaction ranges.
@@ -31,6 +30,12 @@ scene::Scene reaching_scene(const pack::PackSlice& slice, const std::string& pat
   scene.in.near_field = input::NearField{.alpha1 = 0.0, .beta1 = 0.0, .alpha2 = 0.0, .beta2 = 0.0, .cutoff = range};
   scene.reach = std::max(2.0 * scene.sizes.largest(), range);
   return scene;
+}
+
+scene::Scene reaching_scene(const pack::PackSlice& slice, const std::string& path, double& range) {
+  scene::Scene scene = scene::build(input::parse(slice.scene, path, {}));
+  confine::apply(slice.confined, scene.container);
+  return reaching(std::move(scene), range);
 }
 
 // This rank's share of the rows, wherever their columns are.
@@ -54,6 +59,11 @@ bool give_springs(const std::string& path, Bed& bed) {
 }
 
 }  // namespace
+
+geometry::ColumnGrid analysis_columns(const scene::Scene& scene) {
+  double range = 0.0;
+  return reaching(scene, range).columns();
+}
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {
   const Occupation now("the analysis of the pack");

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <ctime>
 #include <limits>
 
 #include "base/log.hpp"
+#include "base/patience.hpp"
 #include "base/signals.hpp"
 #include "base/text.hpp"
 #include "disk/text_file.hpp"
@@ -20,18 +19,10 @@ namespace packmpi::run {
 namespace {
 
 constexpr std::int64_t look_every = 25;  // steps
-constexpr double layer_interval = 60.0;  // [s] no checkpoint at a layer's end is younger than that
+constexpr double layer_interval = 60.0;  // [s] after the last one is one written at a layer's end, or so many times
+constexpr double writes_apart = 20.0;    // what one takes: 5 % of the run at most, if every = "..." is longer
 constexpr double stop_interval = 1.0;    // [s] between looks for the STOP file
-constexpr double slurm_reserve = 10.0;   // [s] for the end of the program
 constexpr double never = std::numeric_limits<double>::infinity();
-
-// [s] from now to the end of the job's time, if Slurm tells.
-double slurm_seconds() {
-  const char* end = std::getenv("SLURM_JOB_END_TIME");
-  if (end == nullptr) return never;
-  const double at = std::strtod(end, nullptr);
-  return at > 0.0 ? at - static_cast<double>(std::time(nullptr)) - slurm_reserve : never;
-}
 
 const char* phase_name(pack::Phase phase) {
   constexpr std::array<const char*, 3> names{"insertion", "settling", "relaxation"};
@@ -45,7 +36,7 @@ Keeper::Keeper(Bed& bed, Journal& journal, const Files& files, const Options& op
       journal_(journal),
       files_(files),
       rhythm_(tables::rhythm_of(bed.scene.in.checkpoint.every).value_or(tables::Rhythm{})),
-      limit_(std::min(options.max_hours > 0.0 ? options.max_hours * 3600.0 : never, slurm_seconds())),
+      limit_(seconds_allowed(options.max_hours)),
       last_step_(bed.progress.steps),
       step_limit_(options.max_steps > 0 ? bed.progress.steps + options.max_steps
                                         : std::numeric_limits<std::int64_t>::max()),
@@ -66,7 +57,9 @@ void Keeper::look() {
   look(due_by_clock(never) || (rhythm_.steps > 0 && bed_.progress.steps - last_step_ >= rhythm_.steps));
 }
 
-void Keeper::layer_ended() { look(due_by_clock(layer_interval) || rhythm_.steps > 0); }
+void Keeper::layer_ended() {
+  look(due_by_clock(std::max(layer_interval, writes_apart * longest_write_)) || rhythm_.steps > 0);
+}
 
 void Keeper::look_while_inserting(LocalIndex before) {
   const Due due = agree(false);

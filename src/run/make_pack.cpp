@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "base/log.hpp"
+#include "base/patience.hpp"
 #include "disk/text_file.hpp"
 #include "observe/measure.hpp"
 #include "pack/pack.hpp"
@@ -101,7 +103,8 @@ bool goes_on(const comm::Comm& comm, const scene::Scene& scene, const Options& o
 control::Filling begin_filling(const comm::Comm& comm, const scene::Scene& scene, const Options& options) {
   if (!scene.in.target || goes_on(comm, scene, options)) return {};
   check_files(comm, scene, options);
-  return find_filling(comm, scene);
+  Patience patience(files_of(scene.in.name, options).stop, options.max_hours);
+  return find_filling(comm, scene, [&patience] { patience.look(); });
 }
 
 void take_time(const comm::Comm& comm, const Stopwatch& watch, const pack::Progress& before,
@@ -145,14 +148,29 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   return record;
 }
 
+// Refuses more ranks than its analysis can use, before the pack is made.
+void check_analysis(const comm::Comm& comm, const scene::Scene& scene) {
+  if (!scene.in.output.analysis) return;
+  const std::int64_t most = scene::most_ranks(analysis_columns(scene), scene.in.parallel.decomposition);
+  if (comm.size() <= most) return;
+  comm::fail_together(comm, ExitCode::bad_input,
+                      fmt::format("{}: output.analysis: its measures reach 2.5 diameters, for which this scene has "
+                                  "columns for at most {} ranks; use so many, or analyze the pack afterwards",
+                                  scene.in.file, most));
+}
+
 }  // namespace
 
 report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options,
                             Attendant* guest) {
   Attendant nobody;
+  check_analysis(comm, scene);
+  const Stopwatch watch;
   const control::Filling filling = begin_filling(comm, scene, options);
+  Options left = options;  // of the time
+  if (left.max_hours > 0.0) left.max_hours = std::max(1e-9, left.max_hours - watch.seconds() / 3600.0);
   const Claim claim = claim_files(comm, scene, options);
-  report::RunRecord record = make(comm, scene, options, claim.files, filling, guest != nullptr ? *guest : nobody);
+  report::RunRecord record = make(comm, scene, left, claim.files, filling, guest != nullptr ? *guest : nobody);
   if (scene.in.output.analysis) (void)analyze(comm, claim.files.pack);
   if (record.series_rows_lost > 0) {
     comm::fail_together(comm, ExitCode::io_failure,

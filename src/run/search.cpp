@@ -50,9 +50,10 @@ std::vector<Trial> share(const comm::Comm& comm, std::size_t count, std::size_t 
 
 std::size_t most_layers_of(const Sample& sample) { return static_cast<std::size_t>(scene::most_layers(sample.scene)); }
 
-std::vector<Trial> try_knobs(const comm::Comm& comm, const Sample& sample, const std::vector<Knob>& knobs) {
-  std::vector<Trial> trials =
-      share(comm, knobs.size(), most_layers_of(sample), [&](std::size_t k) { return try_knob(sample, knobs[k]); });
+std::vector<Trial> try_knobs(const comm::Comm& comm, const Sample& sample, const std::vector<Knob>& knobs,
+                             const Look& look) {
+  std::vector<Trial> trials = share(comm, knobs.size(), most_layers_of(sample),
+                                    [&](std::size_t k) { return try_knob(sample, knobs[k], look); });
   for (const Trial& trial : trials) {
     const scene::Friction friction = control::friction_of(sample.scene.in, trial.knob);
     log::info(fmt::format(
@@ -137,7 +138,7 @@ control::Limits Extremes::limits() const {
   return {mean(loosest), mean(densest)};
 }
 
-Extremes find_extremes(const comm::Comm& comm, const scene::Scene& scene) {
+Extremes find_extremes(const comm::Comm& comm, const scene::Scene& scene, const Look& look) {
   Extremes found;
   std::vector<Sample> samples;
   for (int k = 0; k < seeds_of_extremes; ++k) {
@@ -149,24 +150,25 @@ Extremes find_extremes(const comm::Comm& comm, const scene::Scene& scene) {
   const Knob loosest = control::loosest_knob(scene.in);
   const std::vector<Trial> trials =
       share(comm, 2 * samples.size(), most_layers_of(samples.front()),
-            [&](std::size_t k) { return try_knob(samples[k / 2], k % 2 == 0 ? 0.0 : loosest); });
+            [&](std::size_t k) { return try_knob(samples[k / 2], k % 2 == 0 ? 0.0 : loosest, look); });
   for (std::size_t k = 0; k < trials.size(); ++k) (k % 2 == 0 ? found.densest : found.loosest).push_back(trials[k]);
   return found;
 }
 
-control::Filling find_filling(const comm::Comm& comm, const scene::Scene& scene) {
+control::Filling find_filling(const comm::Comm& comm, const scene::Scene& scene, const Look& look) {
   const input::Target& target = *scene.in.target;
-  const control::Limits limits = target.relative_density ? find_extremes(comm, scene).limits() : control::Limits{};
+  const control::Limits limits =
+      target.relative_density ? find_extremes(comm, scene, look).limits() : control::Limits{};
   const double wanted = control::fraction_wanted(target, limits);
   const Sample sample = control::sample_of(scene);
   log::info(fmt::format("target: {}; {} tells what friction gives it, of about {:.0f} particles", density_words(wanted),
                         sample.whole ? "the scene itself" : "a sample", sample.particles));
-  std::vector<Trial> trials = try_knobs(comm, sample, first_knobs(scene.in));
+  std::vector<Trial> trials = try_knobs(comm, sample, first_knobs(scene.in), look);
   if (!target.relative_density) check_possible(comm, sample, control::limits_of(control::curve_of(trials)), wanted);
   const double near = sample.whole ? 0.5 * target.tolerance : 0.0;
   for (int k = 0; k < (sample.whole ? more_whole : more_small); ++k) {
     if (std::abs(best_of(trials, wanted).relaxed - wanted) <= near) break;
-    const std::vector<Trial> more = try_knobs(comm, sample, {next_knob(trials, wanted)});
+    const std::vector<Trial> more = try_knobs(comm, sample, {next_knob(trials, wanted)}, look);
     trials.insert(trials.end(), more.begin(), more.end());
   }
   control::Filling filling;

@@ -144,10 +144,12 @@ void check_crushing(const input::Input& in, const Scene& scene) {
   const double overlap = confined_overlap(scene);
   if (!(overlap > limit)) return;
   const double times = overlap / limit;
-  refuse(in, fmt::format("confinement: under {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
-                         "rest.mean_overlap = {:g}: use {} = {:.2g} Pa or more, or less stress",
-                         mean_stress(*in.confinement), overlap, limit, limiting_key(in),
-                         1.1 * limiting(in).youngs_modulus * times * std::sqrt(times)));
+  refuse(in,
+         fmt::format(
+             "confinement: under a mean stress of {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
+             "rest.mean_overlap = {:g}: use {} = {:.2g} Pa or more, or less stress",
+             mean_stress(*in.confinement), overlap, limit, limiting_key(in),
+             1.1 * limiting(in).youngs_modulus * times * std::sqrt(times)));
 }
 
 // Does any component, or pair of them, have a coefficient above zero?
@@ -199,6 +201,19 @@ double fraction_of_count(const input::Input& in, const Scene& scene) {
                          in.particles.count, fraction));
 }
 
+// Times that nobody could wait for, and whose steps could not be counted.
+void check_times(const input::Input& in, const Scene& scene) {
+  const auto check = [&](const char* key, double seconds, double step) {
+    if (seconds / step <= 0x1p40) return;
+    refuse(in, fmt::format("{}: {:g} s are {:.2g} steps of {:.3g} s, more than 2^40; shorten it", key, seconds,
+                           seconds / step, step));
+  };
+  check("layers.duration", in.layers.duration, scene.settling.time_step);
+  check("dynamics.relaxation", scene.relaxation, scene.time_step);
+  check("rest.wait", scene.wait, scene.time_step);
+  if (in.confinement) check("confinement.wait", in.confinement->wait.value_or(0.0), scene.confining_step);
+}
+
 // Steps, and moduli under which they hold.
 void choose_stages(const input::Input& in, Scene& scene) {
   scene.relaxation = choose_relaxation(in);
@@ -212,6 +227,7 @@ void choose_stages(const input::Input& in, Scene& scene) {
       choose_time_step(in, scene.sizes, "dynamics.time_step", in.dynamics.time_step, in.particles.youngs_modulus);
   scene.settling = choose_settling(in, scene.sizes, scene.time_step);
   scene.confining_step = choose_confining_step(in, scene);
+  check_times(in, scene);
   check_softness(in, scene, "particles.youngs_modulus", in.particles.youngs_modulus);
   check_crushing(in, scene);
   if (softer(in)) check_softness(in, scene, "layers.youngs_modulus", *in.layers.youngs_modulus);
@@ -249,7 +265,7 @@ geometry::ColumnGrid Scene::columns() const {
 }
 
 std::int64_t steps_in(double seconds, double time_step) {
-  return std::max<std::int64_t>(1, std::llround(seconds / time_step));
+  return std::max<std::int64_t>(1, std::llround(std::min(seconds / time_step, 0x1p60)));
 }
 
 std::int64_t steps_a_row(const input::Output& output, double time_step) {

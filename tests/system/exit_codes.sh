@@ -37,6 +37,13 @@ expect 6 'no-such.hdf' "${tiny[@]}" -o out -q --restart no-such.hdf
 must rm -rf out
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
+for time in layers.duration dynamics.relaxation rest.wait; do
+  expect 2 "$time: 1e\+300 s are .* steps of .* s, more than 2\^40; shorten it" "${tiny[@]}" -q --set $time=1e300
+done
+expect 2 'the name is empty' "${tiny[@]}" -q -o ''
+narrow=("${tiny[@]}" --set 'container.size=[0.2,0.2,0.05]' --set output.analysis=true)
+expect 2 'output.analysis: its measures reach 2.5 diameters, .* columns for at most 1 ranks' "${narrow[@]}" -o narrow -q
+expect 0 'at most 1 ranks' check "${narrow[@]}"
 expect 0 'is valid' check "${tiny[@]}"
 must test -z "$(ls -A)"                                    # nothing was written so far
 
@@ -51,6 +58,13 @@ before=$(md5sum out/*)
 expect 0 'quickstart.hdf is finished, whole, and of this scene' "${tiny[@]}" -o out -q --restart auto
 expect 6 'quickstart.hdf is of another scene: seed: 1 before, 2 now' "${tiny[@]}" -o out -q --restart auto --seed 2
 must test "$before" = "$(md5sum out/*)"
+
+expect 2 'no particle of out/quickstart.hdf lies wholly in it' convert out/quickstart.hdf --to csv -o none.csv --cut sphere:diameter=1mm
+must test ! -e none.csv
+# What another run has left there is not named as its own.
+touch out/quickstart.analysis.json
+expect 0 'beside it .json, .log, .steps.csv$' "${tiny[@]}" -o out -q --force
+rm out/quickstart.analysis.json
 
 expect 3 'layers.maximum' "${tiny[@]}" -o short -q --set layers.maximum=1 --set 'container.size=[0.3,0.3,0.4]'
 must test -s short/quickstart.hdf                          # a missed target still leaves its pack

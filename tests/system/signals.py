@@ -153,6 +153,25 @@ def stop_file(process, folder):
     (folder / "STOP").unlink()
 
 
+def put_stop(_process, folder):
+    folder.mkdir(exist_ok=True)
+    (folder / "STOP").touch()
+
+
+def among_samples(what, words, *options, send=None):
+    """While samples of a target are filled in there is nothing that a checkpoint could keep."""
+    folder = scratch / what.lower().replace(" ", "_")
+    process = start(folder, "--set", "target.solid_fraction=0.56", "--set", 'contact.tangential="mindlin"', "--set",
+                    "contact.friction=0.5", *options)
+    time.sleep(2.0)   # samples of a second or more each
+    if send is not None:
+        send(process, folder)
+    text, _ = process.communicate(timeout=60)
+    check(f"{what}: exit code 75, got {process.returncode}", process.returncode == 75, text)
+    check(f"{what}: says so", f"stopped while samples for [target] were made, before anything was written: {words}" in text, text)
+    check(f"{what}: leaves nothing", not list(folder.glob("*.hdf")), text)
+
+
 def main():
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir(parents=True)
@@ -186,6 +205,10 @@ def main():
 
     process = start(folder := scratch / "slurm", SLURM_JOB_END_TIME=str(int(time.time()) + 10))
     end("SLURM_JOB_END_TIME", process, folder, 75, "the time limit is near", whole)
+
+    among_samples("USR2 among samples", "a signal said so", send=to_mpirun(signal.SIGUSR2))
+    among_samples("STOP among samples", "the STOP file is there", send=put_stop)
+    among_samples("Hours among samples", "the time limit is near", "--max-hours", "0.0008")
     print(f"signals: {'failed: ' + '; '.join(failures) if failures else 'passed'}")
     sys.exit(1 if failures else 0)
 
