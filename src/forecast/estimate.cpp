@@ -30,13 +30,12 @@ constexpr double probe_seconds = 1.0;
 constexpr int turns = 3;        // walls and surface make a bed looser: the fraction depends on what is looked for
 constexpr double margin = 0.5;  // of a layer, by which the last one rises above a height that is found
 constexpr double step_row_bytes = 190.0;  // of NAME.steps.csv, about (doc/estimate.md)
-// Memory of a rank (doc/estimate.md): the program and its libraries; what lists add to a particle; slack of arrays
-// that grow; what the allocator holds over what is used; a row on its way to a file, three times.
+// Memory of a rank (doc/estimate.md): the program and its libraries; slack of arrays that grow; what lists add to a
+// particle; a row on its way to a file, three times.
 constexpr double program_bytes = 51e6;
 constexpr double growth = 1.1;
-constexpr std::array<double, 2> pairs_a_particle{2.7, 3.4};  // listed, of discs, of spheres
+constexpr std::array<double, 2> pairs_a_particle{3.3, 4.4};  // listed, of discs, of spheres
 constexpr double pair_bytes = 2.0 * sizeof(LocalIndex);
-constexpr double held = 1.4;
 constexpr std::array<double, 2> contacts_of_one{4.5, 5.2};  // of a disc, of a sphere
 constexpr double row_bytes = 350.0, contact_row_bytes = 250.0;
 
@@ -224,22 +223,22 @@ double own_bytes(const scene::Scene& scene) {
   const particles::Layout layout = scene.features.layout();
   const int axes = scene.container.dimension;
   const double stored = static_cast<double>(layout.record_bytes()) + sizeof(GlobalId);
-  const double remembered = sizeof(double) * (axes + (scene.features.graded ? 1.0 : 0.0));
-  return growth * stored + remembered;
+  const double remembered =
+      sizeof(double) * (axes + 2.0);  // where it was at the last rebuild, how far it reaches, its contacts
+  return growth * (stored + remembered);
 }
 double list_bytes(const scene::Scene& scene) {
   const double pairs = pairs_a_particle[static_cast<std::size_t>(scene.container.dimension - 2)];
   const int stored = scene::stored_doubles(scene.features);
   if (stored == 0) return growth * pair_bytes * pairs;
   // What contacts remember, and once more, with two words each, where they touch, while the lists are made anew.
-  constexpr double touching = 0.75;
+  constexpr double touching = 0.6;
   return pairs * (growth * pair_bytes + sizeof(double) * (stored + touching * (stored + 2)));
 }
 
-// Of a rank with `own` particles, when all begin to move in the final stage and some records are there twice.
+// Of a rank with `own` particles, all of them moving, while lists are made.
 double settling_bytes(const scene::Scene& scene, double own, double ghosts) {
-  const auto record = static_cast<double>(scene.features.layout().record_bytes());
-  return program_bytes + held * own * ((1.0 + ghosts) * own_bytes(scene) + record + list_bytes(scene));
+  return program_bytes + own * ((1.0 + ghosts) * own_bytes(scene) + list_bytes(scene));
 }
 
 // What a file takes beside, a piece of it at a time.
