@@ -1,5 +1,4 @@
 /// Maps over lateral columns: by hand, against the measures of the whole pack, and on any number of ranks.
-#include "comm/exact_sum.hpp"
 #include "observe/column_maps.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "comm/exact_sum.hpp"
 #include "support/scattered.hpp"
 
 namespace packmpi::observe {
