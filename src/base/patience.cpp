@@ -42,7 +42,7 @@ Patience::Patience(std::string stop_file, double hours)
     : stop_file_(std::move(stop_file)), limit_(seconds_allowed(hours)) {}
 
 void Patience::look() {
-  if (take_wish() == Wish::stop) stop("a signal said so");
+  if (stop_wished()) stop("a signal said so");
   const double now = watch_.seconds();
   if (now >= limit_) stop("the time limit is near");
   if (now - seen_at_ < file_interval) return;

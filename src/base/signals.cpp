@@ -63,4 +63,6 @@ Wish take_wish() {
   return Wish::checkpoint;
 }
 
+bool stop_wished() { return stop_wanted != 0; }
+
 }  // namespace packmpi

@@ -24,5 +24,7 @@ class Signals {
 /// What signals have asked this process for: the greater wish if both. A wish for a checkpoint is forgotten by asking,
 /// a wish to stop is not. Local.
 [[nodiscard]] Wish take_wish();
+/// Has a signal asked for the end? Forgets nothing. Local.
+[[nodiscard]] bool stop_wished();
 
 }  // namespace packmpi

@@ -38,7 +38,10 @@ double ExactSum::round() noexcept {
   return negative ? -sum : sum;
 }
 
-std::vector<double> exact_sums(const Comm& comm, std::span<ExactSum> sums) {
+namespace {
+
+// The next totals, of sums whose words are few enough for one message.
+void add_totals(const Comm& comm, std::span<ExactSum> sums, std::vector<double>& totals) {
   std::vector<std::int64_t> words;
   words.reserve(sums.size() * std::tuple_size_v<ExactSum::Words>);
   for (ExactSum& sum : sums) {
@@ -46,13 +49,22 @@ std::vector<double> exact_sums(const Comm& comm, std::span<ExactSum> sums) {
     words.insert(words.end(), sum.words().begin(), sum.words().end());
   }
   comm.sum(std::span(words));
-  std::vector<double> totals;
   auto at = words.begin();
   for (std::size_t k = 0; k < sums.size(); ++k, at += std::tuple_size_v<ExactSum::Words>) {
     ExactSum all;
     std::copy_n(at, all.words().size(), all.words().begin());
     totals.push_back(all.round());
   }
+}
+
+}  // namespace
+
+std::vector<double> exact_sums(const Comm& comm, std::span<ExactSum> sums) {
+  constexpr std::size_t at_once = 4096;  // 2 MB
+  std::vector<double> totals;
+  totals.reserve(sums.size());
+  for (; !sums.empty(); sums = sums.subspan(std::min(at_once, sums.size())))
+    add_totals(comm, sums.first(std::min(at_once, sums.size())), totals);
   return totals;
 }
 

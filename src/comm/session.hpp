@@ -14,7 +14,8 @@ enum class PetscRanks { together, alone };
 /// Starts MPI (and PETSc on MPI_COMM_WORLD) in its constructor if nobody did, and ends what it started.
 /// A PETSc that is started here sees neither the command line, nor .petscrc of any folder, nor PETSC_OPTIONS and
 /// PETSC_OPTIONS_YAML of the environment: what it is told is the scene's [petsc] options. It catches no signals and
-/// prints no errors (comm/petsc.hpp). One at a time. Collective over all ranks
+/// prints no errors (comm/petsc.hpp). Where it starts MPI, glibc gives memory that is free back to the system, which
+/// a library of PETSc forbids the whole process. One at a time. Collective over all ranks
 /// where it starts MPI or a PETSc of them together.
 class Session {
  public:

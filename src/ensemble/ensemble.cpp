@@ -47,7 +47,7 @@ class Budget {
   // Collective. Nothing is left, or somebody wants the ensemble to stop.
   [[nodiscard]] bool is_over(const comm::Comm& group, const std::string& stop_file) const {
     const bool used_up = (hours_ > 0.0 && hours_left() <= 0.0) || (steps_ > 0 && steps_left() <= 0);
-    const bool mine = take_wish() == Wish::stop || (group.rank() == 0 && (used_up || is_there(stop_file)));
+    const bool mine = stop_wished() || (group.rank() == 0 && (used_up || is_there(stop_file)));
     return group.max(std::int64_t{mine ? 1 : 0}) != 0;
   }
   // Of a pack that is made now.

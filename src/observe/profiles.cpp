@@ -11,7 +11,7 @@ namespace {
 
 constexpr double slabs_a_diameter = 4.0;
 constexpr double diameters_a_layer = 3.0;
-constexpr std::size_t most_slabs = 1 << 20;  // across a container; wider ones in one that is wider
+constexpr std::size_t most_slabs = 1 << 16;  // of a profile; wider ones where more would be needed
 
 std::size_t bins_in(double length, double width) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(length / width - 1e-9)));
@@ -26,7 +26,8 @@ Profile density_profile(const Specimen& pack, int axis) {
   const double length = vertical ? top(pack.comm, pack.store, pack.scene) : box.size[a];
   const double width = 2.0 * pack.scene.sizes.mean() / slabs_a_diameter;
   const std::size_t slabs = std::min(bins_in(length, width), most_slabs);
-  Profile profile{.from = 0.0, .width = vertical ? width : length / static_cast<double>(slabs), .values = {}};
+  const bool as_wide = vertical && slabs < most_slabs;  // a bed ends where it ends, a box with a slab
+  Profile profile{.from = 0.0, .width = as_wide ? width : length / static_cast<double>(slabs), .values = {}};
   const std::size_t bins = bins_in(length, profile.width);
   std::vector<comm::ExactSum> terms(bins);
   for (LocalIndex i = 0; i < pack.store.owned(); ++i) {
@@ -64,7 +65,7 @@ Segregation segregation(const Specimen& pack) {
   const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
   const double width = diameters_a_layer * 2.0 * pack.scene.sizes.mean();
   Segregation result;
-  const std::size_t bins = bins_in(top(pack.comm, pack.store, pack.scene), width);
+  const std::size_t bins = std::min(bins_in(top(pack.comm, pack.store, pack.scene), width), most_slabs);
   std::vector<comm::ExactSum> radii(bins);
   std::vector<std::int64_t> counts(bins, 0);
   std::vector<comm::ExactSum> moments(5);  // r, z, r r, z z, r z

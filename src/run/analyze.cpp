@@ -61,8 +61,14 @@ bool give_springs(const std::string& path, Bed& bed) {
 }  // namespace
 
 geometry::ColumnGrid analysis_columns(const scene::Scene& scene) {
+  constexpr double pressed = 0.9;  // sides under servo come in, by less than that
   double range = 0.0;
-  return reaching(scene, range).columns();
+  scene::Scene wide = reaching(scene, range);
+  if (scene.in.confinement && scene.in.confinement->on_sides()) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(wide.container.lateral_axes()); ++a)
+      wide.container.size[a] *= pressed;
+  }
+  return wide.columns();
 }
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {

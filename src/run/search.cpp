@@ -25,12 +25,14 @@ constexpr double same_knob = 1e-3, aside = 0.01;
 
 // Trials i of `count`, shared among the ranks.
 template <class Try>
-std::vector<Trial> share(const comm::Comm& comm, std::size_t count, std::size_t most_layers, Try&& attempt) {
+std::vector<Trial> share(const comm::Comm& comm, std::size_t count, std::size_t most_layers, const Look& look,
+                         Try&& attempt) {
   constexpr double none = -std::numeric_limits<double>::infinity();
   constexpr std::size_t scalars = 4;
   const std::size_t width = scalars + most_layers;
   std::vector<double> numbers(count * width, none);
   comm::agree_on(comm, [&] {
+    if (look) look();  // a rank without a sample, too
     for (auto k = static_cast<std::size_t>(comm.rank()); k < count; k += static_cast<std::size_t>(comm.size())) {
       const Trial trial = attempt(k);
       const std::array<double, scalars> mine{trial.knob, trial.filled, trial.relaxed, trial.coordination};
@@ -52,7 +54,7 @@ std::size_t most_layers_of(const Sample& sample) { return static_cast<std::size_
 
 std::vector<Trial> try_knobs(const comm::Comm& comm, const Sample& sample, const std::vector<Knob>& knobs,
                              const Look& look) {
-  std::vector<Trial> trials = share(comm, knobs.size(), most_layers_of(sample),
+  std::vector<Trial> trials = share(comm, knobs.size(), most_layers_of(sample), look,
                                     [&](std::size_t k) { return try_knob(sample, knobs[k], look); });
   for (const Trial& trial : trials) {
     const scene::Friction friction = control::friction_of(sample.scene.in, trial.knob);
@@ -149,7 +151,7 @@ Extremes find_extremes(const comm::Comm& comm, const scene::Scene& scene, const 
   }
   const Knob loosest = control::loosest_knob(scene.in);
   const std::vector<Trial> trials =
-      share(comm, 2 * samples.size(), most_layers_of(samples.front()),
+      share(comm, 2 * samples.size(), most_layers_of(samples.front()), look,
             [&](std::size_t k) { return try_knob(samples[k / 2], k % 2 == 0 ? 0.0 : loosest, look); });
   for (std::size_t k = 0; k < trials.size(); ++k) (k % 2 == 0 ? found.densest : found.loosest).push_back(trials[k]);
   return found;

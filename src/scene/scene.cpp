@@ -205,7 +205,7 @@ double fraction_of_count(const input::Input& in, const Scene& scene) {
 void check_times(const input::Input& in, const Scene& scene) {
   const auto check = [&](const char* key, double seconds, double step) {
     if (seconds / step <= 0x1p40) return;
-    refuse(in, fmt::format("{}: {:g} s are {:.2g} steps of {:.3g} s, more than 2^40; shorten it", key, seconds,
+    refuse(in, fmt::format("{}: {:g} s are {:.2g} steps of {:.3g} s, more than 2^40; give less", key, seconds,
                            seconds / step, step));
   };
   check("layers.duration", in.layers.duration, scene.settling.time_step);

@@ -38,7 +38,7 @@ must rm -rf out
 expect 2 'did you mean "layers.duration"|did you mean "duration"' "${tiny[@]}" --set layers.duratoin=1
 expect 2 'use at most [0-9]+ ranks|beyond the limit of eq. \(23\)' "${tiny[@]}" --set dynamics.time_step=1e-3
 for time in layers.duration dynamics.relaxation rest.wait; do
-  expect 2 "$time: 1e\+300 s are .* steps of .* s, more than 2\^40; shorten it" "${tiny[@]}" -q --set $time=1e300
+  expect 2 "$time: 1e\+300 s are .* steps of .* s, more than 2\^40; give less" "${tiny[@]}" -q --set $time=1e300
 done
 expect 2 'the name is empty' "${tiny[@]}" -q -o ''
 narrow=("${tiny[@]}" --set 'container.size=[0.2,0.2,0.05]' --set output.analysis=true)

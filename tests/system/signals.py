@@ -43,8 +43,9 @@ scratch, command = Path(sys.argv[1]), sys.argv[sys.argv.index("--") + 1:]
 failures = []
 
 
-def start(folder, *options, mca=(), **environment):
-    words = [command[0], *mca, *command[1:], str(scratch / "signals.toml"), "-o", str(folder), "-q", "--restart", "auto", *options]
+def start(folder, *options, mca=(), quiet=True, **environment):
+    words = [command[0], *mca, *command[1:], str(scratch / "signals.toml"), "-o", str(folder), *(["-q"] if quiet else []),
+             "--restart", "auto", *options]
     return subprocess.Popen(words, env={**os.environ, **environment}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                             start_new_session=True)
 
@@ -162,11 +163,15 @@ def among_samples(what, words, *options, send=None):
     """While samples of a target are filled in there is nothing that a checkpoint could keep."""
     folder = scratch / what.lower().replace(" ", "_")
     process = start(folder, "--set", "target.solid_fraction=0.56", "--set", 'contact.tangential="mindlin"', "--set",
-                    "contact.friction=0.5", *options)
-    time.sleep(2.0)   # samples of a second or more each
+                    "contact.friction=0.5", "--set", "layers.duration=40.0", *options, quiet=False)   # samples of seconds each
+    before = ""
     if send is not None:
+        for line in process.stdout:
+            before += line
+            if "tells what friction gives it" in line:
+                break
         send(process, folder)
-    text, _ = process.communicate(timeout=60)
+    text = before + process.communicate(timeout=60)[0]
     check(f"{what}: exit code 75, got {process.returncode}", process.returncode == 75, text)
     check(f"{what}: says so", f"stopped while samples for [target] were made, before anything was written: {words}" in text, text)
     check(f"{what}: leaves nothing", not list(folder.glob("*.hdf")), text)
@@ -208,7 +213,7 @@ def main():
 
     among_samples("USR2 among samples", "a signal said so", send=to_mpirun(signal.SIGUSR2))
     among_samples("STOP among samples", "the STOP file is there", send=put_stop)
-    among_samples("Hours among samples", "the time limit is near", "--max-hours", "0.0008")
+    among_samples("Hours among samples", "the time limit is near", "--max-hours", "1e-6")
     print(f"signals: {'failed: ' + '; '.join(failures) if failures else 'passed'}")
     sys.exit(1 if failures else 0)
 
