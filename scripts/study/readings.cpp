@@ -30,7 +30,7 @@
 #include "comm/session.hpp"
 #include "geometry/volume.hpp"
 #include "input/read.hpp"
-#include "rsa/sphere.hpp"
+#include "rsa/cells.hpp"
 #include "run/bed.hpp"
 #include "scene/limits.hpp"
 
@@ -113,70 +113,17 @@ std::vector<double> radii_of(const scene::Scene& scene, std::uint32_t layer, dou
   return radii;
 }
 
-// Spheres in cells that are one largest diameter wide or wider: what overlaps a sphere is in its cell or one beside it.
-class Cells {
- public:
-  explicit Cells(const scene::Scene& scene) : metric_(scene.container) {
-    const geometry::Container& box = scene.container;
-    const double width = 2.0 * scene.sizes.largest() * (1.0 + rsa::slack);
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (a < 2) periodic_[a] = box.periodic[a];
-      if (box.size[a] > 0.0) counts_[a] = std::max(1, static_cast<int>(box.size[a] / width));
-      if (box.size[a] > 0.0) inverse_[a] = counts_[a] / box.size[a];
-    }
-    counts_[static_cast<std::size_t>(box.vertical())] *= 2;  // above H_d, too
-    cells_.resize(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]));
-  }
-
-  void add(const rsa::Sphere& sphere) {
-    const auto [x, y, z] = cell_of(sphere);
-    cells_[index(x, y, z)].push_back(sphere);
-  }
-  [[nodiscard]] bool overlaps(const rsa::Sphere& trial) const {
-    const auto [x, y, z] = cell_of(trial);
-    const auto hit = [&](const rsa::Sphere& there) { return metric_.overlap(trial, there); };
-    for (int k = 0; k < 27; ++k) {
-      const std::array<int, 3> cell{x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1};
-      if (is_there(cell) && std::ranges::any_of(cells_[index(cell[0], cell[1], cell[2])], hit)) return true;
-    }
-    return false;
-  }
-
- private:
-  [[nodiscard]] std::array<int, 3> cell_of(const rsa::Sphere& sphere) const {
-    std::array<int, 3> cell{};
-    for (std::size_t a = 0; a < 3; ++a)
-      cell[a] = static_cast<int>(std::clamp(sphere.centre[a] * inverse_[a], 0.0, counts_[a] - 1.0));
-    return cell;
-  }
-  [[nodiscard]] bool is_there(const std::array<int, 3>& cell) const {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!periodic_[a] && (cell[a] < 0 || cell[a] >= counts_[a])) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] std::size_t index(int x, int y, int z) const {
-    const auto wrapped = [](int i, int count) { return static_cast<std::size_t>((i + count) % count); };
-    const auto nx = static_cast<std::size_t>(counts_[0]), ny = static_cast<std::size_t>(counts_[1]);
-    return (wrapped(z, counts_[2]) * ny + wrapped(y, counts_[1])) * nx + wrapped(x, counts_[0]);
-  }
-
-  rsa::Metric metric_;
-  std::array<bool, 3> periodic_{};
-  std::array<int, 3> counts_{1, 1, 1};
-  Vec3 inverse_{};
-  std::vector<std::vector<rsa::Sphere>> cells_;
-};
-
 // Inserts a layer. The number placed.
 std::int64_t insert(run::Bed& bed, std::uint32_t layer, double volume, const Region& region) {
   const scene::Scene& scene = bed.scene;
   const auto up = static_cast<std::size_t>(scene.container.vertical());
   const auto at_height = [&](double z) { return z + scene.sizes.largest() > region.bottom; };
-  Cells there(scene);
+  const rsa::LayerRegion cells{.layer = layer, .bottom = std::max(region.bottom, 0.0), .thickness = region.thickness};
+  const rsa::CellGrids grids(scene, bed.ownership, cells, bed.store.owned());
+  rsa::Bins there(grids, rsa::Metric(scene.container));  // one level of sizes in these scenes: all find all
   for (LocalIndex i = 0; i < bed.store.owned(); ++i) {
     const rsa::Sphere sphere{bed.store.position(i), bed.store.radius(i)};
-    if (at_height(sphere.centre[up])) there.add(sphere);
+    if (at_height(sphere.centre[up])) there.add(sphere, 0);
   }
   bed.store.set_ghosts(0);
   std::int64_t placed = 0;
@@ -187,7 +134,7 @@ std::int64_t insert(run::Bed& bed, std::uint32_t layer, double volume, const Reg
       const rsa::Sphere trial{
           scene.container.draw({u[0], u[1], u[2]}, radius, std::max(region.bottom, 0.0), region.thickness), radius};
       if (there.overlaps(trial)) continue;
-      there.add(trial);
+      there.add(trial, 0);
       bed.store.add(bed.progress.count + placed++, trial.centre, radius, {}, {});
       break;
     }

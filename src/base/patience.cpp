@@ -1,7 +1,5 @@
 #include "base/patience.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
@@ -10,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/signals.hpp"
 
 namespace packmpi {
@@ -27,28 +24,27 @@ double slurm_seconds() {
   return at > 0.0 ? at - static_cast<double>(std::time(nullptr)) - slurm_reserve : no_limit;
 }
 
-[[noreturn]] void stop(const char* why) {
-  throw Error(ExitCode::stopped_early,
-              fmt::format("stopped while samples for [target] were made, before anything was written: {}; "
-                          "the same command begins anew",
-                          why));
-}
-
 }  // namespace
 
 double seconds_allowed(double hours) { return std::min(hours > 0.0 ? hours * 3600.0 : no_limit, slurm_seconds()); }
 
-Patience::Patience(std::string stop_file, double hours)
-    : stop_file_(std::move(stop_file)), limit_(seconds_allowed(hours)) {}
+StopFile::StopFile(std::string path) : path_(std::move(path)) {}
 
-void Patience::look() {
-  if (stop_wished()) stop("a signal said so");
+bool StopFile::is_there() {
   const double now = watch_.seconds();
-  if (now >= limit_) stop("the time limit is near");
-  if (now - seen_at_ < file_interval) return;
+  if (now - seen_at_ < file_interval) return false;
   seen_at_ = now;
   std::error_code ignored;
-  if (std::filesystem::exists(stop_file_, ignored)) stop("the STOP file is there");
+  return std::filesystem::exists(path_, ignored);
+}
+
+Patience::Patience(const std::string& stop_file, double hours)
+    : stop_file_(stop_file), limit_(seconds_allowed(hours)) {}
+
+const char* Patience::why_to_end() {
+  if (stop_wished()) return "a signal said so";
+  if (watch_.seconds() >= limit_) return "the time limit is near";
+  return stop_file_.is_there() ? "the STOP file is there" : nullptr;
 }
 
 }  // namespace packmpi

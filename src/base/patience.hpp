@@ -1,4 +1,4 @@
-/// Whether a run is told to end, before it has anything that a checkpoint could keep.
+/// Whether a run is told to end.
 #pragma once
 #include <string>
 
@@ -10,19 +10,30 @@ namespace packmpi {
 /// infinite: no limit. Local.
 [[nodiscard]] double seconds_allowed(double hours);
 
-/// Signals, the STOP file and the limits of time, while the samples of a target are made: each rank makes its own and
-/// looks for itself. Local.
-class Patience {
+/// The file that ends a run. Local.
+class StopFile {
  public:
-  Patience(std::string stop_file, double hours);
-  /// Throws Error(stopped_early) if the run is to end. Cost: a clock, and once a second a look for the file.
-  void look();
+  explicit StopFile(std::string path);
+  /// Cost: a clock, and once a second a look for the file; false in between.
+  [[nodiscard]] bool is_there();
 
  private:
-  std::string stop_file_;
+  std::string path_;
+  Stopwatch watch_;
+  double seen_at_ = 0.0;  // [s] last look
+};
+
+/// Signals, the STOP file and the limits of time, where there is nothing that a checkpoint could keep. Local.
+class Patience {
+ public:
+  Patience(const std::string& stop_file, double hours);
+  /// Why the run is to end now; null: it is not.
+  [[nodiscard]] const char* why_to_end();
+
+ private:
+  StopFile stop_file_;
   double limit_;  // [s] since then
   Stopwatch watch_;
-  double seen_at_ = 0.0;  // [s] last look for the file
 };
 
 }  // namespace packmpi

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -48,13 +47,6 @@ std::string effective_to_show(const input::Input& in) {
          in.effective.substr(end);
 }
 
-// How many ranks the run, and the analysis that it wants, can use.
-std::int64_t ranks_allowed(const scene::Scene& scene, const geometry::ColumnGrid& grid) {
-  const input::Decomposition kind = scene.in.parallel.decomposition;
-  const std::int64_t most = scene::most_ranks(grid, kind);
-  return scene.in.output.analysis ? std::min(most, scene::most_ranks(run::analysis_columns(scene), kind)) : most;
-}
-
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
   const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
@@ -64,8 +56,7 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
         effective_to_show(scene.in), scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx,
-        ny, ranks_allowed(scene, ownership.grid()),
-        scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
+        ny, run::most_ranks(scene), scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
     if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));
     if (insertion_alone(scene.in)) {

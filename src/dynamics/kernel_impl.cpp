@@ -138,9 +138,8 @@ Kernel kernel(const Features& f) {
     const int moving = (f.memory ? 2 : 0) + (f.rotation ? 1 : 0) + (f.rolling ? 1 : 0);
     return Kernels::kernels[one_component + 2 * moving + (f.periodic ? 1 : 0)];
   }
-  const int moving = f.memory
-                         ? (f.rolling ? 2 : (f.rotation ? 1 : 0))
-                         : (f.rotation ? 2 : (f.friction ? 1 : 0));  // spin without friction is rare: friction zero
+  const int moving = f.memory ? (f.rolling ? 2 : (f.rotation ? 1 : 0))
+                              : (f.rotation ? 2 : (f.friction ? 1 : 0));  // of spin with friction zero, too
   return Kernels::kernels[(f.memory ? of_a_law : 0) + 4 * moving + (f.periodic ? 2 : 0) + (f.graded ? 1 : 0)];
 }
 

@@ -15,6 +15,7 @@
 #include "pack/checkpoint.hpp"
 #include "pack/pack.hpp"
 #include "report/fields.hpp"
+#include "run/analyze.hpp"
 #include "run/record.hpp"
 #include "run/search.hpp"
 #include "run/settle.hpp"
@@ -352,9 +353,8 @@ void add_steps(const scene::Scene& scene, report::Estimate& e) {
 
 void add_ranks(const scene::Scene& scene, int ranks, report::Estimate& e) {
   e.ranks = ranks;
-  const geometry::ColumnGrid grid = scene.columns();
-  e.most_ranks = scene::most_ranks(grid, scene.in.parallel.decomposition);
-  scene::check_ranks(grid, scene.in.parallel.decomposition, ranks);
+  e.most_ranks = run::most_ranks(scene);
+  run::check_ranks(scene, ranks);
   e.ghosts = ghost_share(scene, ranks);
   const double own = static_cast<double>(e.particles.value) / ranks;
   const double settling = settling_bytes(scene, own, e.ghosts);

@@ -1,9 +1,12 @@
 #include "run/analyze.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/memory.hpp"
 #include "disk/text_file.hpp"
 #include "input/read.hpp"
@@ -47,6 +50,17 @@ void take_share(const pack::PackRows& rows, const scene::Scene& scene, particles
   }
 }
 
+geometry::ColumnGrid analysis_columns(const scene::Scene& scene) {
+  constexpr double pressed = 0.9;  // sides under servo come in, by less than that
+  double range = 0.0;
+  scene::Scene wide = reaching(scene, range);
+  if (scene.in.confinement && scene.in.confinement->on_sides()) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(wide.container.lateral_axes()); ++a)
+      wide.container.size[a] *= pressed;
+  }
+  return wide.columns();
+}
+
 /// Collective. What the contacts of the pack remember, to be laid down at the next rebuild; whether all that the law of
 /// the scene needs is there.
 bool give_springs(const std::string& path, Bed& bed) {
@@ -60,15 +74,22 @@ bool give_springs(const std::string& path, Bed& bed) {
 
 }  // namespace
 
-geometry::ColumnGrid analysis_columns(const scene::Scene& scene) {
-  constexpr double pressed = 0.9;  // sides under servo come in, by less than that
-  double range = 0.0;
-  scene::Scene wide = reaching(scene, range);
-  if (scene.in.confinement && scene.in.confinement->on_sides()) {
-    for (std::size_t a = 0; a < static_cast<std::size_t>(wide.container.lateral_axes()); ++a)
-      wide.container.size[a] *= pressed;
+std::int64_t most_ranks(const scene::Scene& scene) {
+  const input::Decomposition kind = scene.in.parallel.decomposition;
+  const std::int64_t most = scene::most_ranks(scene.columns(), kind);
+  return scene.in.output.analysis ? std::min(most, scene::most_ranks(analysis_columns(scene), kind)) : most;
+}
+
+void check_ranks(const scene::Scene& scene, int ranks) {
+  scene::check_ranks(scene.columns(), scene.in.parallel.decomposition, ranks);
+  if (!scene.in.output.analysis) return;
+  try {
+    scene::check_ranks(analysis_columns(scene), scene.in.parallel.decomposition, ranks);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("output.analysis: its measures reach 2.5 diameters. {}; or analyze the pack "
+                                          "afterwards, on fewer ranks",
+                                          error.what()));
   }
-  return wide.columns();
 }
 
 std::string analyze(const comm::Comm& comm, const std::string& path) {

@@ -1,9 +1,9 @@
 /// `packmpi analyze`: what a pack is like inside.
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "comm/comm.hpp"
-#include "geometry/columns.hpp"
 #include "scene/scene.hpp"
 
 namespace packmpi::run {
@@ -12,7 +12,9 @@ namespace packmpi::run {
 /// ranks; an older one is replaced. Returns the table for the screen. Throws Error(io_failure).
 [[nodiscard]] std::string analyze(const comm::Comm& comm, const std::string& path);
 
-/// The columns of its measures, which reach 2.5 diameters: fewer than those of the run. Local.
-[[nodiscard]] geometry::ColumnGrid analysis_columns(const scene::Scene& scene);
+/// Of a scene with output.analysis, whose measures reach 2.5 diameters and so want wider columns than the run, how many
+/// ranks can be used, and whether so many can: throws Error(bad_input). Of others what the run can use. Local.
+[[nodiscard]] std::int64_t most_ranks(const scene::Scene& scene);
+void check_ranks(const scene::Scene& scene, int ranks);
 
 }  // namespace packmpi::run

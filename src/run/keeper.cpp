@@ -21,7 +21,6 @@ namespace {
 constexpr std::int64_t look_every = 25;  // steps
 constexpr double layer_interval = 60.0;  // [s] after the last one is one written at a layer's end, or so many times
 constexpr double writes_apart = 20.0;    // what one takes: 5 % of the run at most, if every = "..." is longer
-constexpr double stop_interval = 1.0;    // [s] between looks for the STOP file
 constexpr double never = std::numeric_limits<double>::infinity();
 
 const char* phase_name(pack::Phase phase) {
@@ -35,6 +34,7 @@ Keeper::Keeper(Bed& bed, Journal& journal, const Files& files, const Options& op
     : bed_(bed),
       journal_(journal),
       files_(files),
+      stop_file_(files.stop),
       rhythm_(tables::rhythm_of(bed.scene.in.checkpoint.every).value_or(tables::Rhythm{})),
       limit_(seconds_allowed(options.max_hours)),
       last_step_(bed.progress.steps),
@@ -102,18 +102,11 @@ void Keeper::look(bool due) {
 Keeper::Reason Keeper::reason_to_stop() {
   if (bed_.progress.steps >= step_limit_) return Reason::step_limit;
   if (out_of_time()) return Reason::time_limit;
-  return stop_file_there() ? Reason::stop_file : Reason::none;
+  return stop_file_.is_there() ? Reason::stop_file : Reason::none;
 }
 
 // Time for the checkpoint and for another look is held back, by what they took so far.
 bool Keeper::out_of_time() const { return watch_.seconds() + 2.0 * longest_write_ + 2.0 * longest_gap_ >= limit_; }
-
-bool Keeper::stop_file_there() {
-  const double now = watch_.seconds();
-  if (now - stop_seen_at_ < stop_interval) return false;
-  stop_seen_at_ = now;
-  return is_there(files_.stop);
-}
 
 void Keeper::write() {
   const Stopwatch watch;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "base/patience.hpp"
 #include "base/timer.hpp"
 #include "base/types.hpp"
 #include "run/bed.hpp"
@@ -47,7 +48,6 @@ class Keeper {
   [[nodiscard]] bool due_by_clock(double least) const;
   [[nodiscard]] Reason reason_to_stop();
   [[nodiscard]] bool out_of_time() const;
-  [[nodiscard]] bool stop_file_there();
   void write();
   void keep_going_without(const std::string& words);
   [[noreturn]] void stop(Reason reason);
@@ -55,6 +55,7 @@ class Keeper {
   Bed& bed_;
   Journal& journal_;
   const Files& files_;
+  StopFile stop_file_;
   tables::Rhythm rhythm_;
   double limit_ = 0.0;      // [s] since the start; rank 0; infinite: none
   std::int64_t last_step_;  // of the last checkpoint, or of the start
@@ -64,7 +65,6 @@ class Keeper {
   Stopwatch watch_;
   double written_at_ = 0.0;                         // [s]
   double looked_at_ = 0.0;                          // [s]
-  double stop_seen_at_ = 0.0;                       // [s] last look for the STOP file
   double longest_write_ = 0.0, longest_gap_ = 0.0;  // [s]
   bool kept_ = false;                               // the state after last_step_ is on the disk
   bool waits_ = false;                              // a checkpoint that was asked for during an insertion

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/patience.hpp"
 #include "disk/text_file.hpp"
@@ -104,7 +105,14 @@ control::Filling begin_filling(const comm::Comm& comm, const scene::Scene& scene
   if (!scene.in.target || goes_on(comm, scene, options)) return {};
   check_files(comm, scene, options);
   Patience patience(files_of(scene.in.name, options).stop, options.max_hours);
-  return find_filling(comm, scene, [&patience] { patience.look(); });
+  return find_filling(comm, scene, [&patience] {
+    const char* why = patience.why_to_end();
+    if (why == nullptr) return;
+    throw Error(ExitCode::stopped_early,
+                fmt::format("stopped while samples for [target] were made, before anything was written: {}; "
+                            "the same command begins anew",
+                            why));
+  });
 }
 
 void take_time(const comm::Comm& comm, const Stopwatch& watch, const pack::Progress& before,
@@ -148,23 +156,12 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   return record;
 }
 
-// Refuses more ranks than its analysis can use, before the pack is made.
-void check_analysis(const comm::Comm& comm, const scene::Scene& scene) {
-  if (!scene.in.output.analysis) return;
-  const std::int64_t most = scene::most_ranks(analysis_columns(scene), scene.in.parallel.decomposition);
-  if (comm.size() <= most) return;
-  comm::fail_together(comm, ExitCode::bad_input,
-                      fmt::format("{}: output.analysis: its measures reach 2.5 diameters, for which this scene has "
-                                  "columns for at most {} ranks; use so many, or analyze the pack afterwards",
-                                  scene.in.file, most));
-}
-
 }  // namespace
 
 report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, const Options& options,
                             Attendant* guest) {
   Attendant nobody;
-  check_analysis(comm, scene);
+  comm::agree_on(comm, [&] { check_ranks(scene, comm.size()); });  // the analysis comes last
   const Stopwatch watch;
   const control::Filling filling = begin_filling(comm, scene, options);
   Options left = options;  // of the time

@@ -42,8 +42,9 @@ for time in layers.duration dynamics.relaxation rest.wait; do
 done
 expect 2 'the name is empty' "${tiny[@]}" -q -o ''
 narrow=("${tiny[@]}" --set 'container.size=[0.2,0.2,0.05]' --set output.analysis=true)
-expect 2 'output.analysis: its measures reach 2.5 diameters, .* columns for at most 1 ranks' "${narrow[@]}" -o narrow -q
+expect 2 'output.analysis: its measures reach 2.5 diameters. .*use at most 1 ranks' "${narrow[@]}" -o narrow -q
 expect 0 'at most 1 ranks' check "${narrow[@]}"
+expect 2 'output.analysis: its measures' estimate "${narrow[@]}" --ranks 2
 expect 0 'is valid' check "${tiny[@]}"
 must test -z "$(ls -A)"                                    # nothing was written so far
 
