@@ -102,7 +102,8 @@ ContactEffect resolve(const scene::Scene& scene, const Law& law, const LawConsta
 plain::Touch touch_of_pair(const scene::Scene& scene, const particles::Store& store, LocalIndex i, LocalIndex j) {
   const Vec3 d = geometry::separation(scene.container, store.position(i), store.position(j));
   const double radii = store.radius(j) + store.radius(i);
-  return plain::touch(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2], radii);
+  const plain::Separation apart = plain::separation(d[0], d[1], d[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  return {apart.normal, apart.inverse, radii - apart.distance};
 }
 
 plain::Reduced reduced_of(const scene::Scene& scene, const Law& law, const particles::Store& store, LocalIndex i,

@@ -93,7 +93,8 @@ struct Block {
   static constexpr int row = size + 8;  // rows a power of two apart would share cache sets
   alignas(64) double in[M::rows][row];
   alignas(64) double again[M::any_twice ? M::rows : 1][row];
-  alignas(64) double distance[row];  // of a wall
+  alignas(64) double distance[row];             // of the centres, or of one from a wall
+  alignas(64) double bend[F.memory ? row : 1];  // of pairs, 1 / distance
   alignas(64) double pressed[M::two_loops ? 4 : 1][row];
   alignas(64) std::int64_t out[M::accumulators][row];
   alignas(64) std::int64_t own[M::any_own ? M::accumulators : 1][row];

@@ -111,11 +111,17 @@ struct Touch {
   double gap;   // the overlap; negative: they do not touch
 };
 
-/// Of two particles at a distance of (x, y, z), whose square is given; their radii add up to `radius`.
-PACKMPI_INLINE Touch touch(double x, double y, double z, double square, double radius) {
+/// Where two centres are from each other: normal from the first to the second, distance and its inverse.
+struct Separation {
+  Vector normal;
+  double distance, inverse;
+};
+
+/// Of centres (x, y, z) apart, whose square is given.
+PACKMPI_INLINE Separation separation(double x, double y, double z, double square) {
   const double distance = root(square + tiny);
   const double inverse = 1.0 / distance;
-  return {{x * inverse, y * inverse, z * inverse}, inverse, radius - distance};
+  return {{x * inverse, y * inverse, z * inverse}, distance, inverse};
 }
 
 /// From the doubles in the order of scene::storings.

@@ -53,7 +53,8 @@ struct Stepper {
       fetch<F>(data.stored_pairs, p, block);
       pack<F>(data.records, block);
       look_up<F>(data.law.pair_table, block);
-      resolve_pairs<F>(block, pair, periods, scale);
+      separate<F>(block, periods);
+      resolve<F, Other::particle>(block, pair, scale);
       tally.pair_force.show(block.strength, block.filled);
       scatter<F>(data, block);
       keep<F>(block, data.stored_pairs, p);

@@ -71,7 +71,7 @@ PACKMPI_INLINE void add_walls(const StepData& data, const Constants& c, double s
     }
     look_up<F>(data.law.wall_table, b);
     fetch<F>(data.stored_walls, from, b);
-    resolve_walls<F>(b, c, scale);
+    resolve<F, Other::wall>(b, c, scale);
     keep<F>(b, data.stored_walls, from);
     tally.wall_force.show(b.strength, b.filled);
     for (int p = 0; p < count; ++p) {

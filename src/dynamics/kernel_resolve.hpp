@@ -157,11 +157,10 @@ PACKMPI_INLINE void contact(Block<F>& b, int p, const Constants& c, const Reduce
   }
 }
 
-/// All pairs of the block.
+/// Normals and distances of all pairs. A loop of its own, as every root of the law waits for these, and a processor
+/// looks ahead too little to begin the next entries meanwhile.
 template <Features F>
-PACKMPI_INLINE void resolve_pairs(Block<F>& b, const Constants& c, const Periods& periods, double scale) {
-  constexpr particles::Layout layout = F.layout();
-  const Constants k = c;
+PACKMPI_INLINE void separate(Block<F>& b, const Periods& periods) {
   const Periods w = periods;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
@@ -174,29 +173,43 @@ PACKMPI_INLINE void resolve_pairs(Block<F>& b, const Constants& c, const Periods
     }
     double square = x * x + y * y;
     if constexpr (F.dimension == 3) square = square + z * z;
-    const double radius = b.in[layout.radius][p];
-    Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded && !F.mixture) reduced = reduced_of_pair(k.mass_factor, b.in[layout.curvature][p], radius);
-    if constexpr (F.mixture) reduced = reduced_of_mixed(b.in[layout.curvature][p], b.in[layout.component + 1][p]);
-    contact<F>(b, p, constants_at<F>(b, p, k), reduced, touch(x, y, z, square, radius), scale);
+    const Separation apart = separation(x, y, z, square);
+    b.in[0][p] = apart.normal.x, b.in[1][p] = apart.normal.y;
+    if constexpr (F.dimension == 3) b.in[2][p] = apart.normal.z;
+    b.distance[p] = apart.distance;
+    if constexpr (F.memory) b.bend[p] = apart.inverse;
   }
-  if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }
 
-/// All wall contacts of the block; rows 0 .. dimension-1 of `in` hold the normal, towards the wall, `distance` that of
-/// the centre from the plane, negative beyond it.
-template <Features F>
-PACKMPI_INLINE void resolve_walls(Block<F>& b, const Constants& c, double scale) {
+/// What the first end of entry p meets: another particle, or a wall.
+enum class Other : std::uint8_t { particle, wall };
+
+template <Features F, Other other>
+PACKMPI_INLINE Reduced reduced_at(const Block<F>& b, int p, const Constants& c) {
   constexpr particles::Layout layout = F.layout();
+  if constexpr (!F.graded) return {c.reduced_radius, c.reduced_mass};
+  const double curvature = b.in[layout.curvature][p];
+  const double radius = b.in[layout.radius][p];
+  if constexpr (F.mixture) {
+    const double inverse_mass = b.in[layout.component + 1][p];
+    return other == Other::particle ? reduced_of_mixed(curvature, inverse_mass) : Reduced{radius, 1.0 / inverse_mass};
+  } else {
+    return other == Other::particle ? reduced_of_pair(c.mass_factor, curvature, radius)
+                                    : reduced_of_wall(c.mass_factor, curvature, radius);
+  }
+}
+
+/// All contacts of the block; rows 0 .. dimension-1 of `in` hold the normal, `distance` that of the centres, or of one
+/// from the wall's surface, negative beyond it.
+template <Features F, Other other>
+PACKMPI_INLINE void resolve(Block<F>& b, const Constants& c, double scale) {
   const Constants k = c;
   const int filled = b.filled;
   for (int p = 0; p < filled; ++p) {
-    const Vector n = {b.in[0][p], b.in[1][p], F.dimension == 3 ? b.in[2][p] : 0.0};
-    const double radius = b.in[layout.radius][p];
-    Reduced reduced = {k.reduced_radius, k.reduced_mass};
-    if constexpr (F.graded && !F.mixture) reduced = reduced_of_wall(k.mass_factor, b.in[layout.curvature][p], radius);
-    if constexpr (F.mixture) reduced = {radius, 1.0 / b.in[layout.component + 1][p]};
-    contact<F>(b, p, constants_at<F>(b, p, k), reduced, {n, 0.0, radius - b.distance[p]}, scale);
+    double bend = 0.0;
+    if constexpr (F.memory && other == Other::particle) bend = b.bend[p];
+    const Touch at = {vector_at<F>(b.in, 0, p), bend, b.in[F.layout().radius][p] - b.distance[p]};
+    contact<F>(b, p, constants_at<F>(b, p, k), reduced_at<F, other>(b, p, k), at, scale);
   }
   if constexpr (Block<F>::M::two_loops) hold_all<F>(b, c, scale);
 }
