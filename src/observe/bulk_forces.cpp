@@ -12,9 +12,8 @@ Forces forces(const Specimen& pack) {
   std::vector<comm::ExactSum> terms(19);     // fabric, stress, normal force
   std::vector<double> normals;
   const auto vertical = static_cast<std::size_t>(pack.scene.container.vertical());
-  for (const ContactForce& c :
-       contact_forces(pack.store, pack.scene, pack.neighborhood.pairs(), dynamics::stored_pairs(pack.neighborhood))) {
-    if (!pack.bulk.has(c.middle[vertical])) continue;
+  const auto add = [&](const ContactForce& c) {
+    if (!pack.bulk.has(c.middle[vertical])) return;
     const Vec3& l = c.branch;
     const double length = std::sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
     double normal = 0.0;
@@ -27,7 +26,8 @@ Forces forces(const Specimen& pack) {
     }
     terms[18].add(normal);
     normals.push_back(normal);
-  }
+  };
+  each_contact(pack.store, pack.scene, pack.neighborhood.pairs(), dynamics::stored_pairs(pack.neighborhood), add);
   const std::vector<double> sums = comm::exact_sums(pack.comm, terms);
   Forces result;
   result.contacts = pack.comm.sum(std::ssize(normals));
