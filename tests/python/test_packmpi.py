@@ -155,6 +155,15 @@ class Sections(unittest.TestCase):
             render_2d.plt.close(sheet.figure)
             self.assertEqual(ends, wanted, words)
 
+    def test_of_a_wide_bed_the_middle_is_seen(self):
+        for width in (0.5, 10.0):
+            pack = self.pack(size=[width, 0.5, 0.5])
+            sheet = render_2d.new_sheet(pack, 300, render_2d.WIDEST)
+            seen = min(width, 5.0 * vessel.top(pack))
+            np.testing.assert_allclose(sheet.axes.get_xlim(), [0.5 * (width - seen), 0.5 * (width + seen)])
+            self.assertEqual(sheet.whole, seen == width)
+            render_2d.plt.close(sheet.figure)
+
     def test_corners_of_trapezia_and_polygons(self):
         pack = self.pack(b"[container]\npolygon = [[0.3, 1.0], [0.7, 1.0], [0.5, 1.4]]\n", shape="polygon")
         np.testing.assert_allclose(vessel.corners(pack), [[0.0, 0.0], [0.4, 0.0], [0.2, 0.4], [0.0, 0.0]], atol=1e-15)

@@ -1,4 +1,5 @@
 """A pack in a plane, drawn by matplotlib: discs with their force chains, and the section through the middle of a pack of spheres."""
+import math
 from pathlib import Path
 from typing import NamedTuple, Union
 
@@ -16,6 +17,7 @@ from .style import BACKGROUND, INK, LID, TARGET
 DPI = 100
 STRIP, RIM = 1.15, 0.30   # inches for the colour bar and around the picture
 TALLEST = 1.6             # of the picture's width
+WIDEST = 5.0              # of a section's height: of a wider bed its middle is shown
 
 
 class Sheet(NamedTuple):
@@ -27,11 +29,14 @@ class Sheet(NamedTuple):
     caption: Caption
     foot: tuple[float, float]   # where a note begins, shares of the figure
     points: float   # typographical points a metre
+    whole: bool     # the pack is, from side to side
 
 
-def new_sheet(pack: Pack, pixels: int) -> Sheet:
-    """An empty one, `pixels` wide, for the width of the pack and the height of its top."""
-    width, top = float(pack.size[0]), vessel.top(pack)
+def new_sheet(pack: Pack, pixels: int, widest: float = math.inf) -> Sheet:
+    """An empty one, `pixels` wide, for the height of the pack's top and its width, or the middle of it if that is over `widest` heights."""
+    top = vessel.top(pack)
+    width = min(float(pack.size[0]), widest * top)
+    middle = 0.5 * float(pack.size[0])
     room = pixels / DPI - STRIP - RIM
     inches = min(room, TALLEST * pixels / DPI * width / top)
     high = inches * top / width
@@ -40,11 +45,11 @@ def new_sheet(pack: Pack, pixels: int) -> Sheet:
     left = RIM + 0.5 * (room - inches)
     figure = plt.figure(figsize=(across, up), dpi=DPI)
     axes = figure.add_axes([left / across, RIM / up, inches / across, high / up])
-    axes.set_xlim(0.0, width)
+    axes.set_xlim(middle - 0.5 * width, middle + 0.5 * width)
     axes.set_ylim(0.0, top)
     axes.axis("off")
     bar = figure.add_axes([(left + inches + 0.22) / across, (RIM + 0.08 * high) / up, 0.16 / across, 0.84 * high / up])
-    return Sheet(figure, axes, bar, words, (RIM / across, 0.08 / up), 72.0 * inches / width)
+    return Sheet(figure, axes, bar, words, (RIM / across, 0.08 / up), 72.0 * inches / width, width == float(pack.size[0]))
 
 
 def put_circles(sheet: Sheet, places: Floats, radii: Floats, colours: Floats, line: float) -> None:
@@ -59,13 +64,13 @@ def put_heights(sheet: Sheet, pack: Pack) -> None:
     if pack.lid is None:
         sheet.axes.plot([0, width], [target, target], color=TARGET, linewidth=1.4, linestyle=(0, (6, 3)), zorder=5)
     else:
-        sheet.axes.plot(vessel.span(pack, pack.lid), [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=False, zorder=5)
+        sheet.axes.plot(vessel.span(pack, pack.lid), [pack.lid, pack.lid], color=LID, linewidth=3.0, clip_on=not sheet.whole, zorder=5)
 
 
 def put_box(sheet: Sheet, pack: Pack) -> None:
     """The sides and the floor of a box."""
     width, top = float(pack.size[0]), pack.top()
-    sheet.axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=False, zorder=4)
+    sheet.axes.plot([0, 0, width, width], [top, 0, 0, top], color=INK, linewidth=1.6, clip_on=not sheet.whole, zorder=4)
 
 
 def put_vessel(sheet: Sheet, pack: Pack) -> None:
@@ -86,7 +91,7 @@ def put_vessel(sheet: Sheet, pack: Pack) -> None:
         if pack.shape not in ("sphere", "circle"):
             lines.append((middle + side * np.array(floor[:2]), np.zeros(2)))
         for x, z in lines:
-            sheet.axes.plot(x, z, color=INK, linewidth=1.6, clip_on=False, zorder=4)
+            sheet.axes.plot(x, z, color=INK, linewidth=1.6, clip_on=not sheet.whole, zorder=4)
 
 
 def finish(sheet: Sheet, pack: Pack, colouring: Colouring, note: str, path: Union[str, Path]) -> None:
@@ -149,11 +154,12 @@ def cut_middle(pack: Pack) -> Circles:
 
 
 def draw_section(pack: Pack, colouring: Colouring, path: Union[str, Path], pixels: int) -> None:
-    """The section through the middle of a pack of spheres, across y: circles as the plane cuts them, PNG, `pixels` wide."""
+    """The section through the middle of a pack of spheres, across y: circles as the plane cuts them, PNG, `pixels` wide. Of a bed wider than five
+    heights its middle."""
     cut = cut_middle(pack)
-    sheet = new_sheet(pack, pixels)
+    sheet = new_sheet(pack, pixels, WIDEST)
     points = sheet.points * 2.0 * float(cut.radii.mean()) if len(cut.radii) else 1.0
     put_circles(sheet, cut.places, cut.radii, colouring.rgba()[cut.which], min(0.6, 0.04 * points))
     (put_box if pack.shape == "box" else put_vessel)(sheet, pack)
     put_heights(sheet, pack)
-    finish(sheet, pack, colouring, ";  section through the middle", path)
+    finish(sheet, pack, colouring, ";  section through the middle" if sheet.whole else f";  middle of the section, {WIDEST:g} heights wide", path)
