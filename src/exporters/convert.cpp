@@ -237,7 +237,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   }
   take_springs(comm, *file, springs, specimen);
   write_files(comm, names, format.make(specimen), selection);
-  return {names.files(), specimen.count,        specimen.volume,
+  return {names.files(), specimen.count,        selection.places(),         specimen.volume,
           specimen.cut,  specimen.cut_fraction, words_of(springs, specimen)};
 }
 

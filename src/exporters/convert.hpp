@@ -31,11 +31,11 @@ struct ConvertRequest {
 /// What was written.
 struct Converted {
   std::vector<std::string> files;
-  std::int64_t particles = 0;
-  double volume = 0.0;        ///< [m3] of the particles as spheres; 9 digits
-  std::string cut{};          ///< in words what was cut out; "": nothing
-  double cut_fraction = 0.0;  ///< its solid fraction, spheres cut by its sides, to 1e-9
-  std::string springs{};      ///< what becomes of the springs of friction, in words; "": nothing to tell
+  std::int64_t particles = 0, of = 0;  ///< written; of the pack and its copies
+  double volume = 0.0;                 ///< [m3] of the particles as spheres; 9 digits
+  std::string cut{};                   ///< in words what was cut out; "": nothing
+  double cut_fraction = 0.0;           ///< its solid fraction, spheres cut by its sides, to 1e-9
+  std::string springs{};               ///< what becomes of the springs of friction, in words; "": nothing to tell
 };
 
 /// One format, for help and documentation.

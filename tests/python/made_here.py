@@ -174,7 +174,7 @@ class Files(unittest.TestCase):
                               check=True, capture_output=True, text=True).stdout
         self.assertEqual(list(part), [Path(file)])
         self.assertEqual(Path(file).read_bytes(), Path("by_program.csv").read_bytes())
-        self.assertIn(f"by_program.csv: {part.particles} particles", said)
+        self.assertIn(f"by_program.csv: {part.particles} of {packmpi.read('bed.hdf').count} particles", said)
         self.assertIn(f"cut out: {part.cut}; solid fraction {part.cut_fraction:.9f}", said)
         self.assertTrue(0 < part.particles < packmpi.read("bed.hdf").count)
         with self.assertRaisesRegex(packmpi.Problem, "periodic"):

@@ -280,6 +280,14 @@ class CommandLine(unittest.TestCase):
             command.run(["report"])
         self.assertIn("usage: packmpi report", said.getvalue())
 
+    def test_an_empty_name_is_no_folder(self):
+        for tool in command.COMMANDS:
+            said = io.StringIO()
+            with contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as end:
+                command.run([tool, "/no/such.hdf", "-o", ""])
+            self.assertEqual(end.exception.code, 2)
+            self.assertIn("-o/--output: the name is empty", said.getvalue())
+
 
 if __name__ == "__main__":
     unittest.main()

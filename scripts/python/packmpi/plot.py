@@ -19,7 +19,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from . import sizes as size_curves  # noqa: E402
-from .problem import Problem  # noqa: E402
+from .problem import Problem, named  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
 from .style import ACHIEVED, BACKGROUND, INK, LOOK, OTHER, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
@@ -306,7 +306,7 @@ def main(words: list[str]) -> None:
     """packmpi plot WORDS."""
     parser = argparse.ArgumentParser(prog="packmpi plot", description="Plot what a pack (NAME.hdf) is like.")
     parser.add_argument("pack", help="pack file, NAME.hdf")
-    parser.add_argument("-o", "--output", type=Path, help="folder for the plots (default: that of the pack)")
+    parser.add_argument("-o", "--output", type=named, help="folder for the plots (default: that of the pack)")
     parser.add_argument("--format", choices=["png", "svg"], default="png")
     parser.add_argument("--only", nargs="+", choices=list(PLOTS), default=list(PLOTS), help="default: all")
     parser.add_argument("--program", help="packmpi, to analyze the pack (default: this one)")

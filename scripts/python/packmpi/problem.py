@@ -1,4 +1,13 @@
 """What a user can mend, in one sentence."""
+import argparse
+from pathlib import Path
+
+
+def named(words: str) -> Path:
+    """The file or folder that an option names: an empty name would be the working folder."""
+    if words:
+        return Path(words)
+    raise argparse.ArgumentTypeError("the name is empty")
 
 
 class Problem(Exception):

@@ -24,7 +24,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
 from . import vessel  # noqa: E402
-from .problem import Problem  # noqa: E402
+from .problem import Problem, named  # noqa: E402
 from .pack import Floats, Pack  # noqa: E402
 from .style import BACKGROUND, INK, LID, TARGET  # noqa: E402
 from .units import length_unit  # noqa: E402
@@ -189,7 +189,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     """The options of packmpi render."""
     parser = argparse.ArgumentParser(prog="packmpi render", description="Draw a pack (NAME.hdf) as a PNG picture.")
     parser.add_argument("pack", help="pack file, NAME.hdf")
-    parser.add_argument("-o", "--output", help="picture to write (default: NAME.png beside the pack)")
+    parser.add_argument("-o", "--output", type=named, help="picture to write (default: NAME.png beside the pack)")
     parser.add_argument("--color", choices=PROPERTIES, nargs="+", default=[None],
                         help="what the colours show (default: radius, or layer if all radii are equal)")
     parser.add_argument("--size", type=int, default=1000, help="width in pixels, about (default 1000)")
@@ -205,7 +205,7 @@ def parse(words: list[str]) -> argparse.Namespace:
 def main(words: list[str]) -> None:
     """packmpi render WORDS."""
     options = parse(words)
-    path = options.output or os.path.splitext(options.pack)[0] + ".png"
+    path = str(options.output or Path(options.pack).with_suffix(".png"))
     pack = Pack(options.pack)
     outside = pack.dimension == 3 and not options.section
     if outside:

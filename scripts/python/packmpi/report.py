@@ -16,7 +16,7 @@ import numpy as np
 
 from . import plot
 from .crate import write_record
-from .problem import Problem
+from .problem import Problem, named
 from .pack import Pack
 from .render import Colouring, container_size, pictures_of, use_few_colours
 from .render_2d import draw_section
@@ -371,7 +371,7 @@ def main(words: list[str]) -> None:
     """packmpi report WORDS."""
     parser = argparse.ArgumentParser(prog="packmpi report", description="Write one page, HTML, on a pack (NAME.hdf).")
     parser.add_argument("pack", help="pack file, NAME.hdf")
-    parser.add_argument("-o", "--output", type=Path, help="page to write (default: NAME.html beside the pack)")
+    parser.add_argument("-o", "--output", type=named, help="page to write (default: NAME.html beside the pack)")
     parser.add_argument("--program", help="packmpi, to analyze the pack (default: this one)")
     parser.add_argument("--size", type=int, default=700, help="width of the pictures in pixels, about (default 700)")
     parser.add_argument("--crate", metavar="LICENCE", help="write ro-crate-metadata.json, too: a record of the pack and its files for an archive; an SPDX name (CC-BY-4.0) or an address")
