@@ -68,8 +68,9 @@ std::int64_t side_tick(const scene::Scene& scene, const Gains& gains) {
 
 std::int64_t expected_steps(const scene::Scene& scene, double height, double mass) {
   if (!scene.in.confinement) return 0;
-  // Over the rough surface, and what beds were strained by; then crossings (doc/howto_confinement.md has figures).
-  constexpr double roughness = 1.2, vertical_strain = 0.01, lateral_strain = 0.012, crossings = 30.0;
+  // Over the rough surface, and what beds were strained by; then crossings (doc/estimate.md has figures).
+  constexpr double vertical_strain = 0.01, lateral_strain = 0.012, crossings = 30.0;
+  const double roughness = scene.container.dimension == 3 ? 0.6 : 1.5;
   const Gains gains = gains_of(scene, height, mass);
   double way = roughness * 2.0 * scene.sizes.mean() + vertical_strain * height;
   if (scene.in.confinement->on_sides()) {
