@@ -10,8 +10,8 @@ WORDS = {  # what a module is for, in two or three words
     "base": "types, errors, random", "comm": "MPI, exact sums", "disk": "files, HDF5, seal", "particles": "records of one rank",
     "mesh": "surfaces of triangles", "geometry": "container, columns", "document": "TOML with places", "input": "scene file to structs", "scene": "sizes, ownership", "rsa": "insertion of a layer",
     "neighbor": "ghosts, lists, frozen", "implicit": "steps by Newton", "dynamics": "law, kernel, steps", "observe": "measures, reads only", "report": "tables, JSON, series",
-    "pack": "packs, checkpoints", "handover": "cuts, springs", "exporters": "other codes' formats", "forecast": "estimate, probe", "ensemble": "many packs", "tables": "units, sieve tables", "control": "friction for a density", "run": "Algorithm 1, keeper", "confine": "lid, stress, servo",
-    "config": "a scene as structs", "law": "contact constants", "start": "what one goes on from",
+    "pack": "packs, checkpoints", "handover": "specimens, springs", "exporters": "other codes' formats", "forecast": "estimate, probe", "ensemble": "many packs", "tables": "units, sieve tables", "control": "friction for a density", "run": "Algorithm 1, keeper", "confine": "lid, stress, servo",
+    "config": "a scene as structs", "checks": "keys against keys", "law": "contact constants", "start": "what one goes on from",
     "library": "for other programs", "cli": "command line", "python": "for Python"}
 
 

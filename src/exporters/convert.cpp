@@ -14,8 +14,8 @@
 #include "exporters/formats.hpp"
 #include "exporters/quote.hpp"
 #include "exporters/rows_file.hpp"
-#include "exporters/specimen.hpp"
 #include "handover/cut.hpp"
+#include "handover/specimen.hpp"
 #include "input/read.hpp"
 #include "mesh/file.hpp"
 #include "pack/pack_file.hpp"
@@ -228,8 +228,9 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   comm::agree_on(comm, [&] {
     if (comm.rank() == 0) check_free(names);
   });
-  const Selection selection(*file, scene, request, cut);
-  Specimen specimen = survey(comm, *file, selection, names.request, scene);
+  const Selection selection(*file, scene, {request.pack, request.trim, request.copies}, cut);
+  Specimen specimen = survey(comm, *file, selection, scene);
+  specimen.file = std::filesystem::path(names.request.file).filename().string();
   if (cut.on() && specimen.count == 0) {
     comm::fail_together(
         comm, ExitCode::bad_input,

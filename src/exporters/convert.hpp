@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "comm/comm.hpp"
+#include "handover/selection.hpp"
 
 namespace packmpi::exporters {
 
-/// What becomes of particles that are higher than the target height, H_d.
-enum class Trim {
-  none,
-  drop,  ///< every particle that reaches above H_d is left out
-  cut    ///< those with their centre above H_d are left out: the plane cuts by halves, spheres stay whole
-};
+using handover::Trim;
 
 struct ConvertRequest {
   std::string pack;    ///< path

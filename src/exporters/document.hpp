@@ -1,5 +1,5 @@
 /// What a file of another code consists of. One writer a format makes one from a specimen; the file itself is written
-/// by output/rows_file. Private to this module.
+/// by exporters/rows_file. Private to this module.
 #pragma once
 #include <fmt/format.h>
 
@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "exporters/specimen.hpp"
+#include "exporters/header.hpp"
 
 namespace packmpi::exporters {
 
+using handover::Outgoing;
+using handover::Selection;
+using handover::Specimen;
 using Text = fmt::memory_buffer;
 
 /// Words, then a stretch of bytes for each particle in turn.

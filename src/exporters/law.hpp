@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/specimen.hpp"
+#include "exporters/document.hpp"
 
 namespace packmpi::exporters {
 

@@ -4,7 +4,6 @@
 
 #include "comm/comm.hpp"
 #include "exporters/document.hpp"
-#include "exporters/specimen.hpp"
 
 namespace packmpi::exporters {
 

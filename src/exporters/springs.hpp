@@ -2,7 +2,8 @@
 #pragma once
 #include <string>
 
-#include "exporters/specimen.hpp"
+#include "exporters/convert.hpp"
+#include "exporters/document.hpp"
 
 namespace packmpi::exporters {
 

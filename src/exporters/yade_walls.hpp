@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/specimen.hpp"
+#include "exporters/document.hpp"
 #include "mesh/surface.hpp"
 
 namespace packmpi::exporters::yade {

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "input/keys.hpp"
-#include "input/words.hpp"
+#include "config/words.hpp"
 
 namespace packmpi::input {
 namespace {

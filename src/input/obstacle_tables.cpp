@@ -4,7 +4,7 @@
 
 #include "config/named_files.hpp"
 #include "input/array_tables.hpp"
-#include "input/words.hpp"
+#include "config/words.hpp"
 
 namespace packmpi::input {
 namespace {

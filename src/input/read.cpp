@@ -12,7 +12,7 @@
 #include "config/restitution.hpp"
 #include "config/vessel.hpp"
 #include "document/document.hpp"
-#include "input/checks.hpp"
+#include "checks/checks.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"

@@ -16,7 +16,7 @@ struct Overrides {
 
 /// Collective. Rank 0 reads and parses, all ranks get the same Input or throw the same Error(bad_input), whose words
 /// are one line "FILE:LINE: KEY: what is wrong; what to do". Unknown keys are errors with a suggestion. Ranges of
-/// single keys and cross-checks that need no rank count are done here (input/checks.cpp).
+/// single keys and cross-checks that need no rank count are done here (checks/scene.cpp).
 [[nodiscard]] Input read(const comm::Comm& comm, const std::string& path, const Overrides& overrides);
 
 /// Rank-local part of read(): parse `text` as if it were the file `path`, with the files that it names. For tests and

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "input/words.hpp"
+#include "config/words.hpp"
 #include "tables/units.hpp"
 
 namespace packmpi::input {

@@ -12,7 +12,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "input/read.hpp"
-#include "input/words.hpp"
+#include "config/words.hpp"
 #include "packmpi/version.hpp"
 
 namespace packmpi::pack {

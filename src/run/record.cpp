@@ -6,7 +6,7 @@
 
 #include "comm/petsc.hpp"
 #include "dynamics/kernel.hpp"
-#include "input/words.hpp"
+#include "config/words.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
 #include "report/judge.hpp"

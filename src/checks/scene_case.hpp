@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "config/input.hpp"
+#include "config/radius_range.hpp"
 #include "config/vessel.hpp"
 #include "document/document.hpp"
-#include "input/input.hpp"
-#include "input/radius_range.hpp"
 
 namespace packmpi::input {
 

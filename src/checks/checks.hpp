@@ -1,7 +1,7 @@
 /// Cross-checks between keys: what no single range can see.
 #pragma once
+#include "config/input.hpp"
 #include "document/document.hpp"
-#include "input/input.hpp"
 
 namespace packmpi::input {
 

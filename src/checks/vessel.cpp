@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 
-#include "input/checks.hpp"
-#include "input/scene_case.hpp"
-#include "input/words.hpp"
+#include "checks/checks.hpp"
+#include "checks/scene_case.hpp"
+#include "config/words.hpp"
 
 namespace packmpi::input {
 namespace {

@@ -1,5 +1,3 @@
-#include "input/checks.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +8,11 @@
 #include <vector>
 
 #include "base/elementary.hpp"
+#include "checks/checks.hpp"
+#include "checks/scene_case.hpp"
 #include "comm/petsc.hpp"
-#include "input/grading.hpp"
-#include "input/scene_case.hpp"
-#include "input/time_step.hpp"
+#include "config/grading.hpp"
+#include "config/time_step.hpp"
 #include "tables/rhythm.hpp"
 
 namespace packmpi::input {

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "input/input.hpp"
+#include "config/input.hpp"
 
 namespace packmpi::input {
 
