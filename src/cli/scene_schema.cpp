@@ -138,8 +138,10 @@ void allow_components(Json& root) {
   for (const char* name : {"friction", "damping_ratio", "restitution", "rolling_friction", "twisting_friction"})
     component[name] = pair[name] = all["contact"]["properties"][name];
   component["wall_friction"] = all["contact"]["properties"]["wall_friction"];
-  Json stratum{{"name", word}, {"top", all["layers"]["properties"]["gap"]}, {"mass", number}};
+  Json stratum{
+      {"name", word}, {"top", all["layers"]["properties"]["gap"]}, {"mass", all["layers"]["properties"]["gap"]}};
   stratum["top"]["description"] = "Height where the stratum ends. [m]";
+  stratum["mass"]["description"] = "What the stratum has inserted. [kg]";
   stratum["shares"] = {{"type", "object"}, {"additionalProperties", number}};
   all["component"] = array_of(component, Json::array({"name"}));
   all["pair"] = array_of(pair, Json::array({"components"}));

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "config/restitution.hpp"
+#include "config/vessel.hpp"
 #include "input/array_tables.hpp"
 
 namespace packmpi::input {
@@ -166,7 +167,7 @@ Stratum stratum_of(const Node& table, const Input& in) {
   one.name = name != nullptr ? name_at("stratum.name", *name) : fmt::format("{}", in.strata.size() + 1);
   const Node *top = entry(table, "top"), *mass = entry(table, "mass"), *shares = entry(table, "shares");
   if (top != nullptr) one.top = number_at("stratum.top", *top, length, above_zero);
-  if (mass != nullptr) one.mass = number_at("stratum.mass", *mass, plain, above_zero);
+  if (mass != nullptr) one.mass = number_at("stratum.mass", *mass, tables::mass, above_zero);
   if (top != nullptr && mass != nullptr)
     fail(table.place, "stratum.mass",
          "there is a top, too: a stratum ends at a height or with a mass; remove one of them");
@@ -212,7 +213,7 @@ void check_mixture(const MixtureTables& tables, const Document& document, const 
   if (in.target && !in.strata.empty())
     refuse("target", "is found on a sample of one recipe, and strata have several; remove one of them");
   if (in.dynamics.theta > 0.0) refuse("dynamics.theta", "implicit steps know one material only; use 0");
-  if (in.layers.region == RegionRule::container)
+  if (in.layers.region == RegionRule::container && !container_of(in.container).closes())  // there it is no choice
     refuse("layers.region", "\"container\" thins out the last layers, which would spoil the shares; use \"open\"");
   if (insertion_alone(in) && !in.strata.empty())
     fail(tables.strata.front().place, "stratum",

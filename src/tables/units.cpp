@@ -15,6 +15,7 @@ namespace {
 constexpr Unit ratios[] = {{"%", -2}};
 constexpr Unit lengths[] = {{"m", 0}, {"km", 3}, {"cm", -2}, {"mm", -3}, {"um", -6}, {"nm", -9}};
 constexpr Unit densities[] = {{"kg/m3", 0}, {"g/cm3", 3}, {"t/m3", 3}};
+constexpr Unit masses[] = {{"kg", 0}, {"t", 3}, {"g", -3}, {"mg", -6}};
 constexpr Unit pressures[] = {{"Pa", 0}, {"kPa", 3}, {"MPa", 6}, {"GPa", 9}, {"N/m2", 0}, {"N/mm2", 6}};
 constexpr Unit times[] = {{"s", 0}, {"ms", -3}, {"us", -6}, {"ns", -9}};
 constexpr Unit velocities[] = {{"m/s", 0}, {"cm/s", -2}, {"mm/s", -3}};
@@ -78,6 +79,7 @@ std::string list(std::span<const Unit> units) {
 const Quantity plain{"", "", {}};
 const Quantity ratio{"", "40 %", ratios};
 const Quantity length{"m", "20 mm", lengths};
+const Quantity mass{"kg", "150 g", masses};
 const Quantity density{"kg/m3", "1 g/cm3", densities};
 const Quantity pressure{"Pa", "100 MPa", pressures};
 const Quantity time{"s", "0.1 ms", times};

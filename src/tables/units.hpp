@@ -21,7 +21,7 @@ struct Quantity {
   std::span<const Unit> units;  ///< the SI unit first; empty: none may be written
 };
 
-extern const Quantity plain, ratio, length, density, pressure, time, velocity, acceleration, angular_velocity,
+extern const Quantity plain, ratio, length, mass, density, pressure, time, velocity, acceleration, angular_velocity,
     drag_factor;
 
 /// A number read from text, or what is wrong with it ("...; what to do").

@@ -671,6 +671,27 @@ TEST(GoodInput, ComponentsGoIntoAMeshOfAFile) {
   EXPECT_NEAR(in.container.mesh->volume(), 1.0 / 6.0, 1e-12);
 }
 
+// Layers end at H_d there, whatever they are of; what a pack says of its scene is a scene.
+TEST(GoodInput, ComponentsGoIntoAVesselThatNarrows) {
+  const std::string two =
+      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = "
+      "1\ndensity = 2000.0\n";
+  const std::string narrowing = "shape = \"frustum\"\nbottom_diameter = 1.4\ntop_diameter = 1.0\nheight = 0.5";
+  const Input in = parse(in_vessel(narrowing) + two, "a.toml", {});
+  EXPECT_EQ(in.layers.region, RegionRule::container);
+  EXPECT_EQ(parse(in.effective, "the scene in a pack", {}).effective, in.effective);
+}
+
+TEST(GoodInput, AMassMayHaveAUnit) {
+  const std::string strata =
+      "[mixture]\nshare_by = \"mass\"\n[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = "
+      "1\n[[stratum]]\nmass = \"150 g\"\n"
+      "[[stratum]]\nmass = 0.2\n";
+  const Input in = parse(in_vessel("size = [1.0, 1.0, 0.5]") + strata, "a.toml", {});
+  ASSERT_EQ(in.strata.size(), 2U);
+  EXPECT_EQ(in.strata[0].mass, 0.15);
+}
+
 TEST(GoodInput, WhatIsSetOfACylinderWins) {
   const std::string by_names = in_vessel("shape = \"cylinder\"\ndiameter = 0.8\nheight = 0.5");
   const std::string by_size = in_vessel("shape = \"cylinder\"\nsize = [0.8, 0.8, 0.5]");
