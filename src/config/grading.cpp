@@ -22,6 +22,9 @@ double diameter_at(const Curve& curve, Interpolation interpolation, double perce
   return std::clamp(low * elementary::power(high / low, share), low, high);
 }
 
+// [percent], as a number that is written with two places.
+double hundredths(double count) { return count / 100.0; }
+
 }  // namespace
 
 std::string flaw(const Curve& curve, const std::array<double, 2>& keep_percent) {
@@ -31,19 +34,21 @@ std::string flaw(const Curve& curve, const std::array<double, 2>& keep_percent) 
     const auto& [low, p] = curve[k - 1];
     const auto& [high, q] = curve[k];
     if (low == high) return fmt::format("the diameter {:g} m is there twice; remove one", high);
-    if (p > q) return fmt::format("{:g} percent follow {:g}; what passes a wider sieve cannot be less", q, p);
+    if (p > q)
+      return fmt::format("has {1:g} percent at {2:g} m and {0:g} at {3:g} m; what passes a wider sieve cannot be less",
+                         q, p, low, high);
   }
   if (curve.front()[1] > keep_percent[0]) {
     return fmt::format(
         "begins at {0:g} percent; begin with the diameter that nothing passes, 0 percent, or leave the finest out: "
-        "keep_percent = [{0:g}, {1:g}]",
-        curve.front()[1], keep_percent[1]);
+        "keep_percent = [{1:g}, {2:g}]",
+        curve.front()[1], hundredths(std::ceil(100.0 * curve.front()[1])), keep_percent[1]);
   }
   if (curve.back()[1] < keep_percent[1]) {
     return fmt::format(
         "ends at {0:g} percent; end with the diameter that all pass, 100 percent, or leave the coarsest out: "
-        "keep_percent = [{1:g}, {0:g}]",
-        curve.back()[1], keep_percent[0]);
+        "keep_percent = [{1:g}, {2:g}]",
+        curve.back()[1], keep_percent[0], hundredths(std::floor(100.0 * curve.back()[1])));
   }
   return "";
 }

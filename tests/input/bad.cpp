@@ -164,6 +164,22 @@ TEST(BadInput, FinesOfWhichNothingIsKnown) {
       "finest out: keep_percent = [5, 100]");
 }
 
+// 3 of 103 g: 2.9126... percent, which two places must not fall short of.
+TEST(BadInput, TheShareOfFinesThatIsProposedIsTaken) {
+  const CurveFile file{"g.csv", "sieve_mm,mass_retained_g\n95,0\n47,40\n23,60\npan,3\n"};
+  const auto parsed = [&](const std::string& more) {
+    (void)parse(good, "good.toml",
+                {{"particles.radius={ distribution = \"grading\", weighting = \"mass\", diameter_curve_file = "
+                  "\"g.csv\"" +
+                  more + " }"}},
+                {.curve = file});
+  };
+  const std::string said = complaint([&] { parsed(""); });
+  EXPECT_NE(said.find("begins at 2.91262 percent"), std::string::npos) << said;
+  EXPECT_NE(said.find("keep_percent = [2.92, 100]"), std::string::npos) << said;
+  EXPECT_NO_THROW(parsed(", keep_percent = [2.92, 100]"));
+}
+
 TEST(BadInput, AGradingFileLiesBesideTheScene) {
   for (const std::string name : {"/etc/passwd", "../a.csv", "a/../../b.csv", ".."}) {
     const std::string set =
