@@ -77,15 +77,15 @@ void add_lacey(const comm::Comm& comm, const particles::Store& store, const scen
     return;
   }
   const double wanted = std::clamp(static_cast<double>(inside[0]) / particles_a_cell, 4.0, most_cells);
-  double whole = depth;
-  for (std::size_t a = 0; a < up; ++a) whole *= scene.container.size[a];
-  const double cells = whole / wanted;
-  const double side = up == 2 ? elementary::cube_root(cells) : std::sqrt(cells);
+  const double cells = scene.container.volume_between(bulk.low, bulk.high) / wanted;
+  // Two cells at least above each other: what is apart lies so.
+  const double high = std::min(up == 2 ? elementary::cube_root(cells) : std::sqrt(cells), 0.5 * depth);
+  const double wide = up == 2 ? std::sqrt(cells / high) : cells / high;
   std::array<std::size_t, 3> counts{1, 1, 1};
   std::array<double, 3> widths{1.0, 1.0, 1.0};
   for (std::size_t a = 0; a <= up; ++a) {
     const double extent = a == up ? depth : scene.container.size[a];
-    counts[a] = static_cast<std::size_t>(std::max(1.0, std::floor(extent / side)));
+    counts[a] = static_cast<std::size_t>(std::max(1.0, std::floor(extent / (a == up ? high : wide))));
     widths[a] = extent / static_cast<double>(counts[a]);
   }
   const std::size_t all = counts[0] * counts[1] * counts[2], components = found.parts.size();

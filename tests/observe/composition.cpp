@@ -36,7 +36,8 @@ class Mixtures : public ::testing::Test {
   }
 
   /// Of the lattice whose point (i, j, k) is of the component, and of the stratum, that the rules say.
-  [[nodiscard]] Composition of(const Rule& component, const Rule& stratum, Spread spread = Spread::all) const {
+  [[nodiscard]] Composition of(const Rule& component, const Rule& stratum, Spread spread = Spread::all,
+                               const Bulk& bulk = {0.0, 1.0}) const {
     std::vector<Grain> grains;
     std::vector<int> components, strata;
     for (int k = 0; k < side; ++k) {
@@ -55,7 +56,7 @@ class Mixtures : public ::testing::Test {
       store.set_substance(i, scene::substance_of(scene_.in, components[id], r));
       stratum_of.push_back(strata[id]);
     }
-    return composition(comm_, store, scene_, {0.0, 1.0}, stratum_of);
+    return composition(comm_, store, scene_, bulk, stratum_of);
   }
 
   comm::Comm comm_{MPI_COMM_WORLD};
@@ -132,6 +133,13 @@ TEST_F(Mixtures, LaceyIsThatOfTheCells) {
   EXPECT_NEAR(apart.parts[0].lacey, 0.0, 1e-14);
   const Composition even = of([](int i, int j, int k) { return (i + j + k) % 2; }, half);
   for (const ComponentPart& part : even.parts) EXPECT_NEAR(part.lacey, (0.25 - 1.6e-5) / (0.25 - 0.00175), 1e-14);
+}
+
+// A bulk less than two cells high has two of them all the same: one above the other is apart, not mixed.
+TEST_F(Mixtures, ALowBedHasCellsAboveEachOther) {
+  const Composition apart = of(half, half, Spread::all, {0.3, 0.7});
+  EXPECT_NEAR(apart.cell, 0.2, 1e-12);
+  for (const ComponentPart& part : apart.parts) EXPECT_NEAR(part.lacey, 0.0, 1e-14);
 }
 
 // Flat, the boundary is where the spheres of both sides touch; one of each exchanged is a five-hundredth of 0.5 m on
