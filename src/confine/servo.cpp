@@ -26,6 +26,17 @@ double compression_modulus(const scene::Scene& scene, double fraction, double pr
   return bulk + 4.0 / 3.0 * shear;
 }
 
+/// Of several components, before sides moved: the same from a checkpoint on.
+double fraction_before(const scene::Scene& scene) {
+  if (!scene.container.is_box()) return scene::expected_fraction(scene).value;
+  scene::Scene before = scene;
+  for (int a = 0; a < scene.container.lateral_axes(); ++a) {
+    const auto axis = static_cast<std::size_t>(a);
+    before.container.size[axis] = scene.in.container.size[axis];
+  }
+  return scene::expected_fraction(before).value;
+}
+
 }  // namespace
 
 Gains gains_of(const scene::Scene& scene, double height, double mass) {
@@ -41,8 +52,7 @@ Gains gains_of(const scene::Scene& scene, double height, double mass) {
   }
   if (!scene.container.is_box()) space = thickness(scene) * scene.container.volume_between(0.0, height);
   gains.density = mass / space;
-  const double fraction =
-      scene.features.mixture ? scene::expected_fraction(scene).value : gains.density / scene.in.particles.density;
+  const double fraction = scene.features.mixture ? fraction_before(scene) : gains.density / scene.in.particles.density;
   gains.modulus = compression_modulus(scene, fraction, scene::mean_stress(asked));
   gains.impedance = std::sqrt(gains.density * gains.modulus);
   gains.closing = share * most / gains.impedance;
@@ -69,8 +79,7 @@ std::int64_t side_tick(const scene::Scene& scene, const Gains& gains) {
 std::int64_t expected_steps(const scene::Scene& scene, double height, double mass) {
   if (!scene.in.confinement) return 0;
   // Over the rough surface, and what beds were strained by; then crossings (doc/estimate.md has figures).
-  constexpr double vertical_strain = 0.01, lateral_strain = 0.012, crossings = 30.0;
-  const double roughness = scene.container.dimension == 3 ? 0.6 : 1.5;
+  constexpr double roughness = 0.6, vertical_strain = 0.01, lateral_strain = 0.012, crossings = 30.0;
   const Gains gains = gains_of(scene, height, mass);
   double way = roughness * 2.0 * scene.sizes.mean() + vertical_strain * height;
   if (scene.in.confinement->on_sides()) {

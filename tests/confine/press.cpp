@@ -204,6 +204,23 @@ TEST(Press, ALidAloneDoesNotWaitForTheFloorsWidth) {
   EXPECT_GT(crossing(1.0, true), 2.0 * crossing(1.0, false));
 }
 
+// What goes on from a checkpoint has sides that have moved, and moves them as before.
+TEST(Press, SidesThatHaveMovedChangeNoGain) {
+  const std::string text =
+      "[container]\nsize = [0.04, 0.04, 0.04]\nboundary = [\"wall\", \"periodic\"]\n[particles]\nyoungs_modulus = 5e7\n"
+      "poisson_ratio = 0.2\ndensity = 2650.0\ndiameter = { distribution = \"equal\", value = 0.006 }\n"
+      "[layers]\nthickness = 0.02\nfraction = 0.22\n[jamming]\ngravity = 9.81\n[contact]\ntangential = \"mindlin\"\n"
+      "friction = 0.3\n[confinement]\nvertical = 5e3\nlateral = 3e3\n[mixture]\nshare_by = \"number\"\n"
+      "[[component]]\nname = \"a\"\nshare = 1\n[[component]]\nname = \"b\"\nshare = 1\ndensity = 1500.0\n";
+  scene::Scene scene = scene::build(input::parse(text, "mixture.toml", {}));
+  const confine::Gains before = confine::gains_of(scene, 0.05, 0.08);
+  scene.container.size[0] *= 0.97, scene.container.size[1] *= 0.98;
+  const confine::Gains after = confine::gains_of(scene, 0.05, 0.08);
+  EXPECT_EQ(after.modulus, before.modulus);
+  EXPECT_EQ(after.closing, before.closing);
+  EXPECT_EQ(after.crossing, before.crossing);
+}
+
 // The time is up before the stress is there: the run goes on to its end, and what is missing is said.
 TEST(Press, GivesUpWhenTheTimeIsUp) {
   const comm::Comm comm(MPI_COMM_WORLD);
