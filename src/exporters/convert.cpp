@@ -95,6 +95,19 @@ void check_copies(const ConvertRequest& request, const geometry::Container& box)
   }
 }
 
+// Formats that carry particles alone, without what stands around them.
+constexpr std::array<std::string_view, 4> without_walls{"csv", "xyz", "vtk", "esys"};
+
+/// What is above H_d bears the lid.
+void check_trim(const ConvertRequest& request, const geometry::Container& vessel) {
+  const bool alone = std::ranges::find(without_walls, request.format) != without_walls.end();
+  if (request.trim == Trim::none || !vessel.lid || alone) return;
+  refuse_request(fmt::format(
+      "--trim: this pack stands under a lid at {:g} m, and what is left out below it bears its stress; take a "
+      "specimen out by --cut, or write csv, xyz, vtk or esys, which carry particles alone",
+      *vessel.lid));
+}
+
 void check_cut(const ConvertRequest& request) {
   if (request.cut.empty()) return;
   const char* other = request.trim != Trim::none ? "--trim" : "";
@@ -129,9 +142,8 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
     able = {Carried{"lammps", {Shape::sphere, Shape::polygon}}, Carried{"liggghts", {Shape::sphere}},
             Carried{"yade", {Shape::sphere, Shape::polygon}}};
   }
-  constexpr std::array<std::string_view, 4> without{"csv", "xyz", "vtk", "esys"};
   const bool usual = vessel.is_box() || vessel.shape == Shape::cylinder;
-  if (usual || std::ranges::find(without, request.format) != without.end()) return;
+  if (usual || std::ranges::find(without_walls, request.format) != without_walls.end()) return;
   std::string names;
   for (const Carried& one : able) {
     if (std::ranges::find(one.shapes, vessel.shape) == one.shapes.end()) continue;
@@ -216,6 +228,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   check_copies(request, scene.container);
   check_components(request, scene);
   check_cut(request);
+  check_trim(request, scene.container);
   const std::string file_of_cut = handover::Cut::file_of(request.cut);
   const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
   const handover::Cut cut =

@@ -8,9 +8,10 @@ namespace {
 constexpr double still = 1e-4;  // of m g d, the usual limit of rest.kinetic_energy
 constexpr double made = 1e-3;   // of the longest spring: what is farther off does not hold the pack
 
-bool at_rest(const pack::PackFile& file, const Specimen& s) {
-  const double weight = s.mass * s.scene.in.jamming.gravity;
-  return file.number("/summary", "kinetic_energy") <= still * weight * 2.0 * s.scene.sizes.mean();
+/// The whole pack, of which a part may be written, or copies.
+bool at_rest(const pack::PackFile& file, const scene::Scene& scene) {
+  const double weight = file.number("/summary", "weight");
+  return file.number("/summary", "kinetic_energy") <= still * weight * 2.0 * scene.sizes.mean();
 }
 
 }  // namespace
@@ -31,7 +32,7 @@ void take_springs(const comm::Comm& comm, const pack::PackFile& file, SpringsPla
     });
     return;
   }
-  if (!at_rest(file, s)) {
+  if (!at_rest(file, s.scene)) {
     plan.missing = "as the pack moves; its velocities are";
     return;
   }

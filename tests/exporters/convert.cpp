@@ -45,6 +45,7 @@ class Convert : public ::testing::Test {
   comm::Comm alone_{MPI_COMM_SELF};
   Folder folder_{comm_};
   confine::Outcome confined_ = {};  ///< of the packs that are made
+  double motion_ = 0.0;             ///< their kinetic energy over weight times diameter; 0: some
 
   /// A pack of made-up particles in folder_; its path.
   std::string make_pack(std::size_t count, int dimension, const std::string& boundary) {
@@ -60,6 +61,10 @@ class Convert : public ::testing::Test {
     RunRecord record = testing::some_record(dimension, 1);
     record.effective_input = input::parse(scene, "scene", {}).effective;
     record.seed = 7;
+    if (motion_ > 0.0) {
+      record.weight = 3.0;
+      record.kinetic_energy = motion_ * 3.0 * 2.0 * scene::build(input::parse(scene, "scene", {})).sizes.mean();
+    }
     record.confined = confined_;
     const std::string path = folder_.file("sample.hdf");
     write_pack(comm_, path, parts.view(static_cast<bool>(keep)), record);
@@ -172,6 +177,21 @@ TEST_F(Convert, SpringsGoAlongWithTheSameBytesOnAnyNumberOfRanks) {
               std::string::npos);
   }
   comm_.barrier();
+}
+
+// Whether the pack is at rest is asked of the whole of it, not of the part or the copies that are written.
+TEST_F(Convert, APartOfAPackIsAtRestAsTheWholeIs) {
+  for (const bool rests : {true, false}) {
+    motion_ = rests ? 0.9e-4 : 1.1e-4;
+    const std::string pack =
+        make_pack_of(301, 3, with_memory(), [](const ContactRow& row) { return row.second == row.first + 1; });
+    for (const Trim trim : {Trim::none, Trim::drop, Trim::cut}) {
+      const Converted done = convert_pack(comm_, {.pack = pack, .format = "lammps", .trim = trim, .force = true});
+      EXPECT_EQ(done.particles < done.of, trim != Trim::none);
+      EXPECT_TRUE(done.springs.starts_with(rests ? "carried over" : "not carried over, as the pack moves"))
+          << done.springs;
+    }
+  }
 }
 
 // Of more contacts than motions: velocities are the pack's, and the script makes no springs.
@@ -470,6 +490,16 @@ TEST_F(Convert, ALidIsCarried) {
           contents(convert_pack(comm_, {.pack = pack, .format = code, .force = true}).files.at(code == "pfc" ? 0 : 1));
       EXPECT_TRUE(contains(text, words)) << code << "\n" << text;
     }
+    const auto refused = [&](const char* code) {
+      try {
+        (void)convert_pack(comm_, {.pack = pack, .format = code, .trim = Trim::cut, .force = true});
+      } catch (const Error& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    EXPECT_TRUE(contains(refused("liggghts"), "--trim: this pack stands under a lid"));
+    EXPECT_EQ(refused("csv"), "");
   }
 }
 
