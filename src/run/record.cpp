@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "comm/petsc.hpp"
-#include "dynamics/kernel.hpp"
 #include "config/words.hpp"
+#include "dynamics/kernel.hpp"
 #include "observe/measure.hpp"
 #include "packmpi/version.hpp"
 #include "report/judge.hpp"
@@ -117,7 +117,7 @@ void measure_bed(const Bed& bed, report::RunRecord& record) {
   const pack::Progress& at = bed.progress;
   record.density = density_target(bed);
   record.particles = at.count;
-  record.height = at.height;
+  record.height = at.confined.on ? bed.height() : at.height;
   const bool full = at.confined.on ? at.confined.full : bed.full();
   const bool counted = record.target_particles > 0, weighed = control::by_mass(scene);
   record.reached = counted                  ? at.count == record.target_particles
