@@ -19,13 +19,16 @@ Vec3 middle(const geometry::Container& box, const Vec3& from, const Vec3& branch
   return x;
 }
 
-Vec3 negative(const Vec3& a) { return {-a[0], -a[1], -a[2]}; }
+/// As the first end has it, or the other; a zero without its sign, which depends on the end.
+Vec3 seen(const Vec3& a, double sign) { return {sign * a[0] + 0.0, sign * a[1] + 0.0, sign * a[2] + 0.0}; }
 
-/// As the other end has it.
-void turn(dynamics::ContactEffect& effect) {
-  effect.force = negative(effect.force);
-  effect.springs.tangential = negative(effect.springs.tangential);
-  effect.springs.rolling = negative(effect.springs.rolling);
+/// From the end with the smaller id.
+void turn(dynamics::ContactEffect& effect, bool turned) {
+  const double sign = turned ? -1.0 : 1.0;
+  effect.force = seen(effect.force, sign);
+  effect.springs.tangential = seen(effect.springs.tangential, sign);
+  effect.springs.rolling = seen(effect.springs.rolling, sign);
+  effect.springs.twisting = effect.springs.twisting + 0.0;
 }
 
 void sort_by_ends(std::vector<ContactForce>& rows) {
@@ -51,7 +54,7 @@ void each_contact(const particles::Store& store, const scene::Scene& scene, cons
     const auto entry = static_cast<std::int64_t>(p);
     dynamics::ContactEffect effect =
         dynamics::pair_contact(scene, law, store, pairs.first[p], pairs.second[p], stored, entry);
-    if (turned) turn(effect);
+    turn(effect, turned);
     const Vec3 xi = store.position(i);
     const Vec3 branch = geometry::separation(scene.container, xi, store.position(j));
     take({.first = ids[static_cast<std::size_t>(i)],
