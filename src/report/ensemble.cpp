@@ -119,11 +119,13 @@ std::string to_markdown(const EnsembleTable& table) {
                  "# {}\n\n| packs | n | quantity | mean | sd | coefficient of variation | 95 % confidence, +- |\n"
                  "|---|---|---|---|---|---|---|\n",
                  table.name);
+  const auto cell = [](double x, int digits) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; };
   for (const Group& group : groups_of(table)) {
     for (std::size_t q = 0; q < group.of.size(); ++q) {
       const Statistics& s = group.of[q];
-      fmt::format_to(std::back_inserter(out), "| {} | {} | {} | {:.6g} | {:.2g} | {:.2g} | {:.2g} |\n", group.label,
-                     s.count, ensemble_quantities[q], s.mean, s.sd, s.variation, s.confidence);
+      fmt::format_to(std::back_inserter(out), "| {} | {} | {} | {} | {} | {} | {} |\n", group.label, s.count,
+                     ensemble_quantities[q], cell(s.mean, 6), cell(s.sd, 2), cell(s.variation, 2),
+                     cell(s.confidence, 2));
     }
   }
   return fmt::to_string(out);

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct EnsembleTable {
 /// Mean, standard deviation (n - 1), coefficient of variation, and the half width of the 95 % confidence interval of
 /// the mean (Student's t) of those values that are numbers. Local.
 struct Statistics {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   int count = 0;
-  double mean = 0.0, sd = 0.0, variation = 0.0, confidence = 0.0;
+  double mean = unknown, sd = unknown, variation = unknown, confidence = unknown;  ///< NaN: too few packs to tell
 };
 [[nodiscard]] Statistics statistics(const std::vector<double>& values);
 

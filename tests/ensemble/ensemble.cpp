@@ -172,6 +172,15 @@ TEST_F(Ensembles, APackThatFailsStopsNoOther) {
   EXPECT_EQ(json["statistics"]["all"]["phi"]["count"], 3);
 }
 
+TEST(Statistics, OfTooFewPacksAreUnknown) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const report::Statistics none = report::statistics({nan, nan}), one = report::statistics({0.6, nan});
+  EXPECT_EQ(none.count, 0);
+  EXPECT_TRUE(std::isnan(none.mean) && std::isnan(none.confidence));
+  EXPECT_EQ(one.mean, 0.6);
+  EXPECT_TRUE(std::isnan(one.sd) && std::isnan(one.variation) && std::isnan(one.confidence));
+}
+
 TEST_F(Ensembles, GrownItMakesWhatIsNewAndKeepsTheRest) {
   EXPECT_EQ(make(options()), 0);
   const pack::PackRows before = pack("box_2_1");
