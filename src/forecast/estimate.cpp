@@ -150,6 +150,62 @@ void scale_floor(const Question& question, double area, double now, std::vector<
   for (const std::size_t axis : open) size[axis] *= factor;
 }
 
+// Of the heights that take as many layers as this scene's the middle one: where an error of the solid fraction does not
+// make one layer more or less.
+double middle_height(const Source& source, const Question& question, const scene::Scene& scene) {
+  constexpr double step = 0.01, most = 0.5;
+  const std::string thickness = "layers.thickness=" + tables::number(scene.in.layers.thickness);
+  const double fraction = fraction_of(scene, question).value;
+  const std::int64_t layers = scene::expected_layers(scene, fraction);
+  std::array<double, 2> ends{1.0, 1.0};  // shares of the height
+  for (const std::size_t end : {0U, 1U}) {
+    for (double way = step; way < most; way += step) {
+      const double share = 1.0 + (end == 0 ? -way : way);
+      std::vector<double> size = scene.in.container.size;
+      size.back() *= share;
+      const scene::Scene other = changed(source, {size_key(scene, size), thickness});
+      if (scene::expected_layers(other, fraction) != layers) break;
+      ends[end] = share;
+    }
+  }
+  return 0.5 * (ends[0] + ends[1]) * scene.in.container.size.back();
+}
+
+// Of thicknesses of layers within a fifth of the scene's that with which whole layers hold the number nearest to the
+// one asked for, where the bed is a little denser or looser, too.
+scene::Scene with_whole_layers(const Source& source, const Question& question, const scene::Scene& scene) {
+  constexpr double widest = 0.2, step = 0.02;
+  const auto wanted = static_cast<double>(*question.particles);
+  const double thickness = changed(source, {}).in.layers.thickness, least = 2.0 * scene.sizes.largest();
+  double best = HUGE_VAL;
+  scene::Scene nearest = scene;
+  for (double share = 1.0 - widest; share < 1.0 + widest + 0.5 * step; share += step) {
+    if (!(share * thickness >= least)) continue;
+    const std::string own = "layers.thickness=" + tables::number(share * thickness);
+    scene::Scene one = changed(source, {size_key(scene, scene.in.container.size), own});
+    const scene::BedFraction fraction = fraction_of(one, question);
+    double worst = 1e-6 * wanted * std::abs(share - 1.0);  // of equals that nearest to the scene's
+    for (const double shift : {-0.5, 0.0, 0.5}) {
+      const scene::Filling filling = scene::expected_filling(one, fraction.value + shift * fraction.error);
+      worst = std::max(worst, std::abs(static_cast<double>(filling.particles) - wanted));
+    }
+    if (worst < best) best = worst, nearest = std::move(one);
+  }
+  return nearest;
+}
+
+// The same of a vessel whose layers differ, where its height is in the middle of those with so many layers.
+scene::Scene layered(const Source& source, const Question& question, scene::Scene scene) {
+  for (int turn = 0; turn < 3; ++turn) {
+    scene = with_whole_layers(source, question, scene);
+    std::vector<double> size = scene.in.container.size;
+    size.back() = middle_height(source, question, scene);
+    const std::string thickness = "layers.thickness=" + tables::number(scene.in.layers.thickness);
+    scene = changed(source, {size_key(scene, size), thickness});
+  }
+  return with_whole_layers(source, question, scene);
+}
+
 // The scene whose particles, height and floor fit together.
 scene::Scene solved(const Source& source, const Question& question, Unknown& unknown) {
   scene::Scene scene = changed(source, {});
@@ -183,7 +239,9 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
       size.back() = fit_extent(scene, particles, fraction_of(scene, question).value);
       scene = changed(source, {size_key(scene, size)});
     }
-    return scene;
+    const bool open = scene.in.layers.region == input::RegionRule::open;
+    if (!open || scene.container.is_mesh()) return scene;  // surfaces are dear to read so often
+    return layered(source, question, std::move(scene));
   }
   const double layers = std::max(1.0, std::round(particles / static_cast<double>(scene::particles_a_layer(scene))));
   for (int turn = 0; turn < turns; ++turn) {
@@ -319,8 +377,9 @@ void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, r
     return std::llround(2.0 * scene::deviation_of_count(scene, static_cast<double>(count)));
   };
   e.height = usual.height;
-  e.particles = {usual.particles, least.particles, most.particles};
-  if (scene.in.particles.count > 0) return;  // exactly
+  const auto [fewest, many] = std::minmax({usual.particles, least.particles, most.particles});
+  e.particles = {usual.particles, fewest, many};  // a denser bed may end a layer earlier
+  if (scene.in.particles.count > 0) return;       // exactly
   e.particles.least = std::max<std::int64_t>(1, e.particles.least - by_chance(e.particles.least) - least.uncertainty);
   e.particles.most += by_chance(e.particles.most) + most.uncertainty;
 }
@@ -427,8 +486,7 @@ report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const
   e.other = !has_size(scene.container);
   e.size = scene.in.container.size;
   e.layer_thickness = scene.in.layers.thickness;
-  e.thickness_changed =
-      unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open && scene.container.straight();
+  e.thickness_changed = unknown == Unknown::height && scene.in.layers.region == input::RegionRule::open;
   e.fraction = fraction.value;
   e.fraction_error = fraction.error;
   e.fraction_given = question.fraction.has_value();
@@ -443,6 +501,7 @@ report::Estimate estimate_of(const comm::Comm& comm, const Source& source, const
   comm.max(bytes);
   e.pack_bytes = bytes[0], e.checkpoint_bytes = bytes[1], e.step_log_bytes = bytes[2];
   e.warnings = warnings_of(scene);
+  if (scene.in.start) e.warnings.emplace_back("[start] is left out: this is of the scene from its floor on");
   if (question.probe) add_probe(comm, scene, e);
   return e;
 }

@@ -268,8 +268,10 @@ double mean_stress(const input::Confinement& asked) {
 
 double confined_overlap(const Scene& scene) {
   if (!scene.in.confinement) return 0.0;
-  constexpr double contacts = 5.0, uneven = 0.9;
-  // In the plane stress is that of a sheet as thick as a mean particle: a contact bears as much as in space.
+  constexpr double uneven = 0.9;
+  // In the plane stress is that of a sheet as thick as a mean particle: a contact bears as much as in space, and there
+  // are fewer of them.
+  const double contacts = scene.container.dimension == 3 ? 5.0 : 3.2;
   const double fraction = expected_fraction(scene).value;
   const input::Particles soft = most_compliant(scene.in);
   const double modulus = input::pair_modulus(soft, soft.youngs_modulus);

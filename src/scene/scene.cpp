@@ -149,7 +149,7 @@ void check_crushing(const input::Input& in, const Scene& scene) {
              "confinement: under a mean stress of {:g} Pa particles would overlap by {:.3g} radii in the mean, beyond "
              "rest.mean_overlap = {:g}: use {} = {:.2g} Pa or more, or less stress",
              mean_stress(*in.confinement), overlap, limit, limiting_key(in),
-             1.1 * limiting(in).youngs_modulus * times * std::sqrt(times)));
+             1.2 * limiting(in).youngs_modulus * times * std::sqrt(times)));
 }
 
 // Does any component, or pair of them, have a coefficient above zero?

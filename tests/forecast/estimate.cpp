@@ -293,6 +293,11 @@ TEST_F(Estimates, OtherVesselsGetTheirHeight) {
     EXPECT_EQ(e.found, "height");
     EXPECT_THAT(report::to_table(e), HasSubstr("container.height = "));
   }
+  // Wider above, layers are whole: so thick that they hold as many, a little denser or looser, too.
+  const report::Estimate widening = found(frustum + "0.1\ntop_diameter = 0.2\n", 1000);
+  EXPECT_NEAR(static_cast<double>(widening.particles.value), 1000.0, 20.0);
+  EXPECT_LT(static_cast<double>(widening.particles.most - widening.particles.least), 40.0);
+  EXPECT_THAT(report::to_table(widening), HasSubstr("layers.thickness = "));
   try {
     (void)found("shape = \"sphere\"\ndiameter = 0.2\n", 9000);
     ADD_FAILURE();
