@@ -5,8 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "input/keys.hpp"
 #include "config/words.hpp"
+#include "input/keys.hpp"
 
 namespace packmpi::input {
 namespace {

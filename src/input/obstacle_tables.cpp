@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "config/named_files.hpp"
-#include "input/array_tables.hpp"
 #include "config/words.hpp"
+#include "input/array_tables.hpp"
 
 namespace packmpi::input {
 namespace {

@@ -8,11 +8,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "checks/checks.hpp"
 #include "config/mesh_vessel.hpp"
 #include "config/restitution.hpp"
 #include "config/vessel.hpp"
 #include "document/document.hpp"
-#include "checks/checks.hpp"
 #include "input/fidelity.hpp"
 #include "input/grading.hpp"
 #include "input/keys.hpp"

@@ -11,8 +11,8 @@
 
 #include "base/digest.hpp"
 #include "base/error.hpp"
-#include "input/read.hpp"
 #include "config/words.hpp"
+#include "input/read.hpp"
 #include "packmpi/version.hpp"
 
 namespace packmpi::pack {
