@@ -77,10 +77,11 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
   return terms;
 }
 
-/// Volume [m3] of a column inside a round vessel up to H_d, from 32 x 32 points, at 32 heights if its walls are not
-/// straight: within a percent of a column; 0 if it is less than an eighth of the column.
+/// Volume [m3] of a column inside a round vessel up to H_d, from 32 x 32 points, or 16 x 16 at 16 heights if its walls
+/// are not straight (a point costs a search in a mesh): within a percent of a column; 0 if it is less than an eighth of
+/// the column.
 double volume_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
-  constexpr int side = 32;
+  const int side = box.straight() ? 32 : 16;
   const std::int64_t row = column / maps.counts[0];
   const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(row);
   const int floors = box.straight() ? 1 : side, points = side * side * floors;
