@@ -20,7 +20,7 @@ memory=/tmp
 work=$(mktemp -d "$memory/packmpi-fuzz-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/findings"
-grep -oh '"[A-Za-z_][A-Za-z0-9_.]*"' "$root"/src/input/{keys,key_words,words}.* "$root"/src/tables/units.* | sort -u >"$build/input.dict"
+grep -oh '"[A-Za-z_][A-Za-z0-9_.]*"' "$root"/src/input/{keys,key_words}.* "$root"/src/config/words.* "$root"/src/tables/units.* | sort -u >"$build/input.dict"
 
 # The timeout is for what waits for ever; the fuzzers themselves allow each trial a second of the processor.
 fuzz() {   # name, options and folders of seeds
