@@ -22,9 +22,6 @@ double diameter_at(const Curve& curve, Interpolation interpolation, double perce
   return std::clamp(low * elementary::power(high / low, share), low, high);
 }
 
-// [percent], as a number that is written with two places.
-double hundredths(double count) { return count / 100.0; }
-
 }  // namespace
 
 std::string flaw(const Curve& curve, const std::array<double, 2>& keep_percent) {
@@ -42,13 +39,13 @@ std::string flaw(const Curve& curve, const std::array<double, 2>& keep_percent) 
     return fmt::format(
         "begins at {0:g} percent; begin with the diameter that nothing passes, 0 percent, or leave the finest out: "
         "keep_percent = [{1:g}, {2:g}]",
-        curve.front()[1], hundredths(std::ceil(100.0 * curve.front()[1])), keep_percent[1]);
+        curve.front()[1], std::ceil(100.0 * curve.front()[1]) / 100.0, keep_percent[1]);
   }
   if (curve.back()[1] < keep_percent[1]) {
     return fmt::format(
         "ends at {0:g} percent; end with the diameter that all pass, 100 percent, or leave the coarsest out: "
         "keep_percent = [{1:g}, {2:g}]",
-        curve.back()[1], keep_percent[0], hundredths(std::floor(100.0 * curve.back()[1])));
+        curve.back()[1], keep_percent[0], std::floor(100.0 * curve.back()[1]) / 100.0);
   }
   return "";
 }
