@@ -21,18 +21,23 @@ enum class Phase {
   relaxation  ///< the final stage goes on
 };
 
+/// Kinetic damping of a bed that swings in its final stage.
+struct Swing {
+  bool on = false;
+  double kinetic_energy = 0.0;  ///< [J] when last looked at, if no particle was stopped then
+};
+
 /// How far the present phase has come: a new phase begins with a new one.
 struct PhaseProgress {
   Phase phase = Phase::insertion;
-  report::LayerRow row{};    ///< of the layer that settles, as far as known
-  std::int64_t done = 0;     ///< steps
-  double phi_before = 0.0;   ///< solid fraction from which the compaction rate is measured, once known
-  double mean_height = 0.0;  ///< [m] of the moving particles at the last look for rest (stop = "settled")
-  /// Step of the look since which the criteria of stop = "settled" hold, or at which the bed was seen to do no more
-  /// than swing, in the final stage; -1: none.
-  std::int64_t calm_since = -1;
-  double phi_calm = 0.0;  ///< solid fraction at that look
-  std::int64_t told = 0;  ///< criteria of rest that the log has told of, a bit each
+  report::LayerRow row{};        ///< of the layer that settles, as far as known
+  std::int64_t done = 0;         ///< steps
+  double phi_before = 0.0;       ///< solid fraction from which the compaction rate is measured, once known
+  double mean_height = 0.0;      ///< [m] of the moving particles at the last look for rest (stop = "settled")
+  std::int64_t calm_since = -1;  ///< step of the look since which the criteria of stop = "settled" hold; -1: none
+  double phi_calm = 0.0;         ///< solid fraction at that look
+  std::int64_t told = 0;         ///< criteria of rest that the log has told of, a bit each
+  Swing swing{};
 };
 
 /// The same on all ranks.

@@ -98,10 +98,18 @@ void each_field(M& mixing, Visit visit) {
   visit("strata", strata);
 }
 
+template <class S, class Visit>
+requires std::is_same_v<std::remove_const_t<S>, Swing>
+void each_field(S& swing, Visit visit) {
+  auto& [on, kinetic_energy] = swing;
+  visit("on", on);
+  visit("kinetic_energy", kinetic_energy);
+}
+
 template <class Now, class Visit>
 requires std::is_same_v<std::remove_const_t<Now>, PhaseProgress>
 void each_field(Now& now, Visit visit) {
-  auto& [phase, row, done, phi_before, mean_height, calm_since, phi_calm, told] = now;
+  auto& [phase, row, done, phi_before, mean_height, calm_since, phi_calm, told, swing] = now;
   visit("phase", phase);
   visit("row", row);
   visit("done", done);
@@ -110,6 +118,7 @@ void each_field(Now& now, Visit visit) {
   visit("calm_since", calm_since);
   visit("phi_calm", phi_calm);
   visit("told", told);
+  visit("swing", swing);
 }
 
 // The present phase's fields stand among the others.
@@ -151,9 +160,9 @@ void each_field(State& state, Visit visit) {
 }
 
 template <class T>
-constexpr bool is_struct =
-    std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> ||
-    std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State> || std::is_same_v<T, control::Mixing>;
+constexpr bool is_struct = std::is_same_v<T, report::LayerRow> || std::is_same_v<T, report::SeriesMark> ||
+                           std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State> ||
+                           std::is_same_v<T, control::Mixing> || std::is_same_v<T, Swing>;
 
 constexpr std::array<std::string_view, 3> phase_names{"insertion", "settling", "relaxation"};
 
@@ -167,7 +176,7 @@ Phase phase_of(const std::string& name) {
 template <class T>
 bool is_off(const T& value) {
   if constexpr (std::is_same_v<T, control::Filling> || std::is_same_v<T, confine::State> ||
-                std::is_same_v<T, control::Mixing>)
+                std::is_same_v<T, control::Mixing> || std::is_same_v<T, Swing>)
     return !value.on;
   return false;
 }

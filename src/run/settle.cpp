@@ -18,13 +18,14 @@ namespace {
 // Share of a part over which its compaction rate is measured.
 constexpr double rate_share = 0.1;
 // Looks whether the bed is at rest in the time that the final stage waits for it at most.
-constexpr int windows_a_wait = 50;
+constexpr int windows_a_wait = 100;
 // The contacts of a high bed that swings as a whole damp that so little that it would swing for longer than all layers
-// took. From the look on at which it is seen to, or after four falls through H_d, particles are stopped again and
-// again: kinetic damping, as in dynamic relaxation (Cundall 1976). Stops come after 2^-5 to 2^-2 of a window and at its
-// end, so that no swing is in step with them all; then all move freely until the bed is looked at.
-constexpr int patience = 20;  // windows
-constexpr int most_halvings = 5, least_halvings = 2;
+// took. So from the look on at which it is seen to, or after four falls through H_d, all particles are stopped whenever
+// their kinetic energy has passed a peak: kinetic damping, as in dynamic relaxation (Cundall 1976). In the last quarter
+// of a window they move freely, so that what is looked at is a bed that nothing holds.
+constexpr int patience = 40;  // windows
+// Whatever its stiffness, a bed swings up and down once in some 26 steps for each diameter of its height.
+constexpr double looks_a_diameter = 1.0 / 3.0;
 // Looks at the criteria of stop = "settled" in the time for which they must hold.
 constexpr int looks_a_hold = 10;
 // 2^6 stairs of the hardening ramp: six square roots give the ratio.
@@ -39,6 +40,7 @@ struct Plan {
   std::int64_t rate_from;
   std::int64_t wait;         // steps that it goes on at most until the bed is at rest; 0: it does not
   std::int64_t wait_window;  // steps between looks whether it is
+  std::int64_t swing_every;  // steps between looks at the energy of a bed that swings
   std::vector<double> ramp;  // moduli; the last one from half the steps on
 
   [[nodiscard]] std::int64_t ramp_start(std::size_t stair) const {
@@ -59,22 +61,13 @@ struct Plan {
   [[nodiscard]] bool look_for_rest(std::int64_t done) const {
     return done >= steps && (done - steps) % wait_window == 0;
   }
-  // Steps of a window's beginning at which particles are stopped: 0, 1/32, 1/16, 1/8, 1/4 of it.
-  [[nodiscard]] std::int64_t next_stop(std::int64_t done) const {
-    const std::int64_t passed = (done - steps) % wait_window;
-    for (int halvings = most_halvings; halvings >= least_halvings; --halvings) {
-      const std::int64_t at = wait_window >> halvings;
-      if (at > passed) return done - passed + at;
-    }
-    return done - passed + wait_window;
+  // Is the energy of a bed that swings looked at after step `done`?
+  [[nodiscard]] bool damps(std::int64_t done) const {
+    return done >= steps && done % swing_every == 0 && 4 * ((done - steps) % wait_window) < 3 * wait_window;
   }
-  [[nodiscard]] bool stops(const pack::PhaseProgress& now) const {
-    const std::int64_t first = now.calm_since >= 0 ? now.calm_since : steps + patience * wait_window;
-    return wait > 0 && now.done >= first && (now.done == first || next_stop(now.done - 1) == now.done);
-  }
-  [[nodiscard]] std::int64_t next(std::int64_t done) const {
+  [[nodiscard]] std::int64_t next(std::int64_t done, bool swings) const {
     std::int64_t stop = std::min(done < steps ? steps : window_end(done), (done / row_every + 1) * row_every);
-    if (wait > 0 && done >= steps) stop = std::min(stop, next_stop(done));
+    if (swings) stop = std::min(stop, (done / swing_every + 1) * swing_every);
     if (look_every > 0) stop = std::min(stop, (done / look_every + 1) * look_every);
     if (done < rate_from) stop = std::min(stop, rate_from);
     for (std::size_t stair = 1; stair < ramp.size(); ++stair) {
@@ -83,6 +76,11 @@ struct Plan {
     return stop;
   }
 };
+
+std::int64_t swing_looks(const scene::Scene& scene) {
+  const double diameters = scene.container.height() / (2.0 * scene.sizes.mean());
+  return std::max<std::int64_t>(1, std::llround(looks_a_diameter * diameters));
+}
 
 Plan plan_of(const scene::Scene& scene, Part part) {
   const bool layer = part == Part::layer;
@@ -96,6 +94,7 @@ Plan plan_of(const scene::Scene& scene, Part part) {
             .rate_from = 0,
             .wait = wait > 0.0 ? scene::steps_in(wait, stage.time_step) : 0,
             .wait_window = scene::steps_in(wait / windows_a_wait, stage.time_step),
+            .swing_every = swing_looks(scene),
             .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
   if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
     plan.look_every = scene::steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);
@@ -183,6 +182,15 @@ bool swings(const observe::Rest& rest, const input::Rest& limits) {
          std::abs(rest.support - 1.0) > limits.support;
 }
 
+// Stops all particles if they have slowed down since the last look. Collective.
+void damp(Bed& bed) {
+  double& before = bed.progress.now.swing.kinetic_energy;
+  const double energy = observe::motion(bed.comm, bed.store, bed.scene).kinetic_energy;
+  const bool peaked = energy < before;
+  if (peaked) bed.stop();
+  before = peaked ? 0.0 : energy;
+}
+
 // Is the part over after now.done steps? Beyond its own steps, once the bed is at rest; that is looked at in
 // windows, from whose beginning the compaction rate counts.
 bool is_over(Bed& bed, const Plan& plan) {
@@ -195,7 +203,7 @@ bool is_over(Bed& bed, const Plan& plan) {
       fmt::format("unbalanced force ratio {:.2e}, KE/(m g d) {:.2e}, support {:.4f} at step {} of the final stage",
                   rest.unbalanced_force, rest.kinetic_energy, rest.support, now.done));
   if (report::at_rest(report::judge(bed.scene, rest))) return true;
-  if (now.calm_since < 0 && swings(rest, bed.scene.in.rest)) now.calm_since = now.done;
+  if (swings(rest, bed.scene.in.rest) || now.done >= plan.steps + patience * plan.wait_window) now.swing.on = true;
   now.phi_before = phi_of_moving(bed);
   return false;
 }
@@ -231,9 +239,9 @@ Settled settle(Bed& bed, Attendant& attendant, Part part) {
   bool early = false;
   bool over = is_over(bed, plan);
   while (!over) {
-    if (plan.stops(now)) bed.stop();  // after a checkpoint of this step: a restart judges what the run judged
+    if (now.swing.on && plan.damps(now.done)) damp(bed);  // after a checkpoint of this step: a restart does it, too
     if (now.done == plan.rate_from) now.phi_before = phi_of_moving(bed);
-    const std::int64_t next = std::min(plan.next(now.done), now.done + attendant.steps_to_look());
+    const std::int64_t next = std::min(plan.next(now.done, now.swing.on), now.done + attendant.steps_to_look());
     bed.stepper.use({plan.stage.time_step, plan.modulus(now.done), friction});
     bed.advance(next - now.done);
     if (part == Part::relaxation) bed.progress.relaxation_steps += next - now.done;

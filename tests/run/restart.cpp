@@ -398,6 +398,34 @@ TEST_P(RestartRules, StoppedWhileItComesToRest) {
   }
 }
 
+// A bed that is stopped at each peak of its energy: right after a look at it, and between two.
+TEST_P(RestartRules, StoppedWhileItsSwingIsDamped) {
+  in_.layers.maximum = 1;
+  in_.layers.duration = 0.8;
+  in_.layers.velocity = {};
+  in_.container.size = {0.4, 0.2, 0.3};  // an energy is looked at each few steps
+  in_.rest.unbalanced_force = 1e9;
+  in_.rest.kinetic_energy = 1e-30;
+  in_.rest.support = 1e-9;
+  in_.rest.wait = 0.2;
+  const Left whole = untouched();
+  const std::int64_t settled = whole.record.layers.at(0).steps, end = settled + whole.record.relaxation_steps;
+  bool looked = false;
+  for (const std::int64_t stop : {end - 9, end - 8, end - 7}) {
+    SCOPED_TRACE(::testing::Message() << "stopped after " << stop << " of " << end << " steps");
+    EXPECT_EQ(run(1, Decomposition::slab, [&](Options& o) { o.force = true, o.max_steps = stop; }),
+              ExitCode::stopped_early);
+    const pack::Swing swing = pack::read_state(file("ckpt.A.hdf")).progress.now.swing;
+    EXPECT_TRUE(swing.on);
+    looked = looked || swing.kinetic_energy > 0.0;
+    world_.barrier();
+    EXPECT_EQ(run(world_.size(), Decomposition::slab, [](Options& o) { o.restart = "auto"; }), ExitCode::done)
+        << words_;
+    expect_same(left(), whole);
+  }
+  EXPECT_TRUE(looked) << "no checkpoint had an energy to compare with";
+}
+
 TEST_P(RestartRules, ASignalOnOneRankStopsAll) {
   const Left whole = untouched();
   in_.checkpoint.every = "off";
