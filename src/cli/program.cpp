@@ -54,9 +54,10 @@ int check(const comm::Comm& comm, const scene::Scene& scene) {
     const auto [nx, ny] = ownership.grid().counts();
     std::string words = fmt::format(
         "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
-        "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles (packmpi estimate)\n",
+        "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles{} (packmpi estimate)\n",
         effective_to_show(scene.in), scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx,
-        ny, run::most_ranks(scene), scene::expected_filling(scene, scene::expected_fraction(scene).value).particles);
+        ny, run::most_ranks(scene), scene::expected_filling(scene, scene::expected_fraction(scene).value).particles,
+        scene.in.start ? " in all, if those of [start] are like the scene's" : "");
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
     if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));
     if (insertion_alone(scene.in)) {

@@ -345,7 +345,7 @@ TEST(Rest, TheFinalStageGoesOnUntilTheBedIsAtRest) {
   EXPECT_THAT(record.missed, IsEmpty());
   EXPECT_TRUE(report::at_rest(record.criteria));
   EXPECT_GE(record.relaxations, 1);
-  EXPECT_EQ(record.relaxation_steps % 250, 0) << "fiftieths of the longest wait";
+  EXPECT_EQ(record.relaxation_steps % 125, 0) << "hundredths of the longest wait";
   EXPECT_LT(record.relaxation_steps, 12500 * record.relaxations);
   EXPECT_GE(record.height, record.target_height);
 }
