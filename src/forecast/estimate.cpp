@@ -167,10 +167,10 @@ void add_counts(const scene::Scene& scene, const scene::BedFraction& fraction, r
   e.particles.most += by_chance(e.particles.most) + most.uncertainty;
 }
 
-// Steps of the final stage: its own, or as many more as beds with memory took until they were at rest, most of them
-// within a half more or less (doc/data/presets.csv); none that waits takes longer than it may.
+// Steps of the final stage: its own, or as many more as beds with memory took until they were at rest, 0.9 to 3.3 falls
+// (doc/data/presets.csv); none that waits takes longer than it may.
 std::int64_t final_steps(const scene::Scene& scene) {
-  constexpr double falls = 2.5, wide = 5.0, falls_if_wide = 10.0;
+  constexpr double falls = 1.7, wide = 5.0, falls_if_wide = 10.0;
   if (!(scene.relaxation > 0.0)) return 0;
   const std::int64_t own = run::steps_of(scene, run::Part::relaxation);
   if (!(scene.wait > 0.0) || !scene.features.memory || !(scene.in.jamming.gravity > 0.0)) return own;
