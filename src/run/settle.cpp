@@ -77,7 +77,7 @@ struct Plan {
   }
 };
 
-std::int64_t swing_looks(const scene::Scene& scene) {
+std::int64_t steps_a_swing_look(const scene::Scene& scene) {
   const double diameters = scene.container.height() / (2.0 * scene.sizes.mean());
   return std::max<std::int64_t>(1, std::llround(looks_a_diameter * diameters));
 }
@@ -94,7 +94,7 @@ Plan plan_of(const scene::Scene& scene, Part part) {
             .rate_from = 0,
             .wait = wait > 0.0 ? scene::steps_in(wait, stage.time_step) : 0,
             .wait_window = scene::steps_in(wait / windows_a_wait, stage.time_step),
-            .swing_every = swing_looks(scene),
+            .swing_every = steps_a_swing_look(scene),
             .ramp = hardening(layer ? stage.youngs_modulus : scene.settling.youngs_modulus, stage.youngs_modulus)};
   if (layer && scene.in.dynamics.stop == input::StopRule::settled) {
     plan.look_every = scene::steps_in(scene.in.dynamics.settled_hold / looks_a_hold, stage.time_step);

@@ -150,14 +150,15 @@ double force_quantum(const Scene& scene) {
   const double quantum = std::ldexp(1.0, exponent);
   const double least = least_force(scene);
   if (quantum <= coarsest * least) return quantum;
+  constexpr double any_surface = 1e3;
   throw Error(
       ExitCode::bad_input,
       fmt::format(
-          "{}: jamming.gravity: forces up to {:.2g} N cannot be summed beside {:.2g} N, the {} of the "
+          "{}: {}: forces up to {:.2g} N cannot be summed beside {:.2g} N, the {} of the "
           "smallest particle: they are 2^50 apart at most; lower {}, friction or moduli, narrow the radii{}, or "
           "raise density or gravity",
-          scene.in.file, quantum * largest_quanta, least,
-          scene.in.jamming.gravity > 0.0 ? "weight" : "lightest contact",
+          scene.in.file, scene.in.contact.friction > any_surface ? "contact.friction" : "jamming.gravity",
+          quantum * largest_quanta, least, scene.in.jamming.gravity > 0.0 ? "weight" : "lightest contact",
           scene.in.near_field ? "the near field" : "layers.velocity",
           without_fines(scene, quantum / coarsest / least)));
 }
