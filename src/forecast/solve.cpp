@@ -17,6 +17,7 @@ namespace packmpi::forecast {
 scene::BedFraction fraction_of(const scene::Scene& scene, const Question& question) {
   constexpr double border = 0.01;  // what floor and surface may take from a target, which is of the bulk
   if (question.fraction) return {*question.fraction, 0.0};
+  if (insertion_alone(scene.in)) return {scene.in.layers.fraction, 0.0};
   if (scene.in.target && !scene.in.target->relative_density) {
     return {control::fraction_wanted(*scene.in.target, {}), border};
   }
@@ -27,7 +28,7 @@ bool has_size(const geometry::Container& vessel) {
   return vessel.is_box() || vessel.shape == geometry::Shape::cylinder;
 }
 bool fits_thickness(const scene::Scene& scene) {
-  return scene.in.layers.region == input::RegionRule::open && !scene.container.is_mesh();
+  return scene.in.layers.region == input::RegionRule::open && !scene.container.is_mesh() && !insertion_alone(scene.in);
 }
 
 namespace {
@@ -53,15 +54,16 @@ Fitted fit_height(const scene::Scene& scene, double particles, double layers, do
           .height = (layers - margin) * solid / (fraction * scene.container.mean_area())};
 }
 
-// H_d below which so many particles fit, between the shape's own walls. A frustum keeps its diameters.
-double fit_extent(const scene::Scene& scene, double particles, double fraction) {
+// H_d below which so many particles fit, between the shape's own walls. A frustum keeps its diameters; a mesh `grows`
+// or not.
+double fit_extent(const scene::Scene& scene, bool grows, double particles, double fraction) {
   const geometry::Container& vessel = scene.container;
   const bool clipped = scene.in.layers.region == input::RegionRule::container;
   const double target = vessel.height();
   const double below = clipped ? scene::height_below(scene, target) : target;
   const double left = target - below;
   const bool flat = scene.in.container.shape == input::VesselShape::polygon;
-  const bool fixed = vessel.is_mesh() || vessel.shape == geometry::Shape::sphere || flat;
+  const bool fixed = (vessel.is_mesh() && !grows) || vessel.shape == geometry::Shape::sphere || flat;
   if (!fixed) return particles * mean_volume(scene) / (vessel.mean_area(0.0, below) * fraction) + left;
   const double top = flat ? vessel.polygon->top() : vessel.is_mesh() ? vessel.interior->high()[2] : vessel.size[0];
   const double height = vessel.level(particles * mean_volume(scene) / fraction) + left;
@@ -72,6 +74,7 @@ double fit_extent(const scene::Scene& scene, double particles, double fraction) 
 
 // Area of the floor on which the scene's height takes so many particles.
 double fit_floor(const scene::Scene& scene, double particles, double fraction) {
+  if (insertion_alone(scene.in)) return particles * mean_volume(scene) / (fraction * scene.container.height());
   if (scene.in.layers.region == input::RegionRule::container) {
     return particles * mean_volume(scene) / (fraction * scene::height_below(scene, scene.container.height()));
   }
@@ -91,6 +94,19 @@ std::string list(const std::vector<double>& numbers) {
 }
 
 scene::Scene changed(const Source& source, const std::vector<std::string>& sets) { return scene::build(source(sets)); }
+
+// A prism, or a vessel with obstacles, is a mesh that ends at H_d, wherever that is; one from a file ends where it
+// does.
+bool grows_with_height(const Source& source, const scene::Scene& scene) {
+  if (!scene.container.is_mesh()) return false;
+  try {
+    const scene::Scene higher =
+        changed(source, {"container.height=" + tables::number(2.0 * scene.in.container.size.back())});
+    return higher.container.interior->high()[2] > scene.container.interior->high()[2];
+  } catch (const Error&) {  // higher than the file's surface
+    return false;
+  }
+}
 
 // Of other vessels only the height is found.
 std::string size_key(const scene::Scene& scene, const std::vector<double>& size) {
@@ -212,9 +228,11 @@ scene::Scene solved(const Source& source, const Question& question, Unknown& unk
     }
     return scene;
   }
-  if (scene.in.layers.region == input::RegionRule::container || !scene.container.straight()) {
+  if (scene.in.layers.region == input::RegionRule::container || !scene.container.straight() ||
+      insertion_alone(scene.in)) {
+    const bool grows = grows_with_height(source, scene);
     for (int turn = 0; turn < turns; ++turn) {
-      size.back() = fit_extent(scene, particles, fraction_of(scene, question).value);
+      size.back() = fit_extent(scene, grows, particles, fraction_of(scene, question).value);
       scene = changed(source, {size_key(scene, size)});
     }
     return fits_thickness(scene) ? layered(source, question, std::move(scene)) : scene;

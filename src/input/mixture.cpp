@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "config/radius_range.hpp"
 #include "config/restitution.hpp"
 #include "config/vessel.hpp"
+#include "geometry/volume.hpp"
 #include "input/array_tables.hpp"
 
 namespace packmpi::input {
@@ -201,6 +203,26 @@ void check_strata(const MixtureTables& tables, const Input& in) {
   }
 }
 
+/// A stratum that ends with a mass has room for a particle.
+void check_masses(const MixtureTables& tables, const Input& in) {
+  for (std::size_t k = 0; k < in.strata.size(); ++k) {
+    const Stratum& one = in.strata[k];
+    if (!one.mass) continue;
+    double lightest = HUGE_VAL;
+    for (std::size_t c = 0; c < in.components.size(); ++c) {
+      const Component& of = in.components[c];
+      if (!((one.shares.empty() ? of.share : one.shares[c]) > 0.0)) continue;
+      const double r = radius_range(of.particles.radius).smallest;
+      lightest = std::min(lightest, of.particles.density * geometry::volume(in.container.dimension, r));
+    }
+    if (*one.mass < lightest) {
+      fail(entry(tables.strata[k], "mass")->place, "stratum.mass",
+           fmt::format("{:g} kg is less than the lightest particle of this stratum, {:.3g} kg; give more", *one.mass,
+                       lightest));
+    }
+  }
+}
+
 /// What does not go together with several components, by name.
 void check_mixture(const MixtureTables& tables, const Document& document, const Input& in) {
   const auto refuse = [&](std::string_view path, std::string_view words) { fail(document.place(path), path, words); };
@@ -325,6 +347,7 @@ void take_mixture(const MixtureTables& tables, const Document& document, Input& 
   for (const Node& table : tables.strata) in.strata.push_back(stratum_of(table, in));
   check_strata(tables, in);
   check_mixture(tables, document, in);
+  check_masses(tables, in);
   envelop(in);
 }
 

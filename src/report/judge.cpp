@@ -130,6 +130,21 @@ void add_audit(const Audit& audit, std::vector<std::string>& missed) {
   }
 }
 
+// Strata and small shares round to whole particles: of what was asked for there may be none.
+void add_components(const input::Input& in, const observe::Composition& composition, std::vector<std::string>& missed) {
+  for (std::size_t k = 0; k < composition.parts.size(); ++k) {
+    const bool asked = in.strata.empty() ? in.components[k].share > 0.0
+                                         : std::ranges::any_of(in.strata, [&](const input::Stratum& one) {
+                                             return (one.shares.empty() ? in.components[k].share : one.shares[k]) > 0.0;
+                                           });
+    if (!asked || composition.parts[k].count > 0) continue;
+    missed.push_back(
+        fmt::format("component \"{}\": the pack has no particle of it; give it a larger share, or its "
+                    "stratum more mass or height",
+                    composition.parts[k].name));
+  }
+}
+
 }  // namespace
 
 std::vector<Criterion> judge(const scene::Scene& scene, const observe::Rest& rest) {
@@ -178,6 +193,7 @@ std::vector<std::string> missed_targets(const scene::Scene& scene, const RunReco
                     scene.container.is_box() ? "size" : "height", record.height, record.target_height,
                     record.layers.size(), record.stop_reason));
   }
+  add_components(scene.in, record.composition, missed);
   add_density(record, missed);
   add_confined(scene, record.confined, missed);
   add_audit(record.audit, missed);
@@ -185,12 +201,13 @@ std::vector<std::string> missed_targets(const scene::Scene& scene, const RunReco
   return missed;
 }
 
-void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers) {
+void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers, std::size_t first) {
   constexpr std::size_t few = 3;
   constexpr double growth = 5.0, noticeable = 0.01;  // [-], m g d
-  if (layers.size() < 2 * few) return;
+  if (layers.size() < first + 2 * few) return;
   const auto less = [](const LayerRow& a, const LayerRow& b) { return a.kinetic_per_mgd < b.kinetic_per_mgd; };
-  const double most_before = std::max_element(layers.begin(), layers.begin() + few, less)->kinetic_per_mgd;
+  const auto begin = layers.begin() + static_cast<std::ptrdiff_t>(first);
+  const double most_before = std::max_element(begin, begin + few, less)->kinetic_per_mgd;
   const double least_now = std::min_element(layers.end() - few, layers.end(), less)->kinetic_per_mgd;
   if (!(least_now > std::max({growth * most_before, noticeable, scene.in.rest.kinetic_energy}))) return;
   throw Error(

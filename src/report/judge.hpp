@@ -22,7 +22,8 @@ namespace packmpi::report {
 
 /// Throws Error(numerical_failure) if the energy left at the end of a layer grows from layer to layer: of the newest
 /// three, the least is over five times the most of the first three, and over 0.01 m g d and the scene's limit. Such a
-/// bed never comes to rest. Local, on every rank alike.
-void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers);
+/// bed never comes to rest. Looks at the layers from `first` on: what another run made has no energy of its own. Local,
+/// on every rank alike.
+void check_energy(const scene::Scene& scene, const std::vector<LayerRow>& layers, std::size_t first = 0);
 
 }  // namespace packmpi::report

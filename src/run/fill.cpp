@@ -1,5 +1,6 @@
 #include "run/fill.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -120,7 +121,8 @@ void insert_and_settle(Bed& bed, Attendant& attendant) {
   if (at.filling.on) measure_filling(bed, attendant);
   at.height = at.now.row.height;
   at.layers.push_back(at.now.row);
-  comm::agree_on(bed.comm, [&] { report::check_energy(bed.scene, at.layers); });
+  const auto taken = static_cast<std::size_t>(std::ranges::count_if(at.layers, start::is_taken_over));
+  comm::agree_on(bed.comm, [&] { report::check_energy(bed.scene, at.layers, taken); });
 }
 
 // What a bed of friction without memory sinks by at most in the final stage, over a layer's rise: it creeps. Measured

@@ -62,15 +62,31 @@ std::string lowered(std::string word) {
   return word;
 }
 
-// The power of ten of the unit of length behind a name.
-int exponent_of(const TextFile& file, const std::vector<std::string>& words, std::string_view name) {
-  if (words.size() < 2) return 0;
-  const auto& units = tables::length.units;
-  const auto unit = std::ranges::find(units, words[1], &tables::Unit::name);
-  if (unit == units.end() || words.size() > 2)
-    file.refuse(fmt::format("the unit of column {} is none of length; write its name as \"{}\" (m) or \"{}_mm\"", name,
-                            name, name));
-  return unit->exponent;
+// What a column is a quantity of.
+const tables::Quantity& quantity_of(std::ptrdiff_t column) {
+  if (column <= col_radius) return tables::length;
+  return column <= col_vz ? tables::velocity : tables::angular_velocity;
+}
+
+// The unit behind a name, as "vx [mm/s]", "vx_mm/s" or "x_mm" have it: all that follows, without brackets.
+std::string unit_behind(std::string_view cell, std::string_view first) {
+  std::string unit;
+  for (const char c : cell.substr(cell.find(first) + first.size())) {
+    if (std::string_view(" _[](){}\"\r").find(c) == std::string_view::npos) unit += c;
+  }
+  return unit;
+}
+
+// The power of ten of that unit.
+int exponent_of(const TextFile& file, std::string_view unit, std::string_view name, const tables::Quantity& quantity) {
+  if (unit.empty()) return 0;
+  const auto found = std::ranges::find(quantity.units, unit, &tables::Unit::name);
+  if (found == quantity.units.end()) {
+    const std::string_view other = quantity.example.substr(quantity.example.find(' ') + 1);
+    file.refuse(fmt::format("column {} is in \"{}\", which is not known; write its name as \"{}\" ({}){}", name, unit,
+                            name, quantity.si, other == quantity.si ? "" : fmt::format(" or \"{}_{}\"", name, other)));
+  }
+  return found->exponent;
 }
 
 Table table_of_names(const TextFile& file, std::string_view line, int dimension) {
@@ -90,8 +106,8 @@ Table table_of_names(const TextFile& file, std::string_view line, int dimension)
     }
     Place& place = table.of[static_cast<std::size_t>(found - names.begin())];
     if (place.cell >= 0) file.refuse(fmt::format("column {} is there twice; leave one", name));
-    const bool of_length = found - names.begin() <= col_radius;
-    place = {static_cast<int>(k), of_length ? exponent_of(file, words, name) : 0, diameter};
+    const tables::Quantity& quantity = quantity_of(found - names.begin());
+    place = {static_cast<int>(k), exponent_of(file, unit_behind(cells[k], words[0]), name, quantity), diameter};
   }
   for (const Column needed : {col_x, col_y, col_z, col_radius}) {
     if (table.of[needed].cell >= 0 || (needed == col_z && dimension == 2)) continue;

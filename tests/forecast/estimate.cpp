@@ -225,6 +225,18 @@ TEST_F(Estimates, StepsOfTheMovingParticlesAreThoseOfTheLoop) {
   }
 }
 
+// Particles that are placed and not moved fill the container as far as layers.fraction says.
+TEST_F(Estimates, InsertionAloneGetsItsHeightAndItsFloor) {
+  const input::Input in = input::parse(
+      "[container]\nsize = [0.1, 0.1, 0.1]\n[particles]\ndensity = 2650\nyoungs_modulus = 1e8\npoisson_ratio = 0.2\n"
+      "radius = { distribution = \"equal\", value = 0.005 }\n[layers]\nduration = 0\nfraction = 0.1\n",
+      "placed.toml", {});
+  const double volume = 1000 * std::numbers::pi / 6.0 * 1e-6 / 0.1;
+  const auto size_of = [&](const forecast::Question& question) { return forecast::estimate(comm_, in, question).size; };
+  EXPECT_NEAR(size_of(without_probe({.particles = 1000})).back(), volume / 0.01, 1e-9);
+  EXPECT_NEAR(size_of(without_probe({.particles = 1000, .height = 0.2})).front(), std::sqrt(volume / 0.2), 1e-9);
+}
+
 // Beyond dynamics.relaxation, which "draft" gives for a start only: without, less than half of the steps were foretold.
 TEST_F(Estimates, TheFinalStageLastsUntilTheBedIsAtRest) {
   Set set{"fidelity=\"draft\"", "contact.tangential=\"mindlin\"", "rest.wait=\"auto\""};
@@ -293,6 +305,10 @@ TEST_F(Estimates, OtherVesselsGetTheirHeight) {
     EXPECT_EQ(e.found, "height");
     EXPECT_THAT(report::to_table(e), HasSubstr("container.height = "));
   }
+  // A prism is a mesh that ends at H_d, wherever that is; its layers are those of the scene.
+  const report::Estimate prism =
+      found("shape = \"prism\"\npolygon = [[0, 0], [0.25, 0], [0.2, 0.2], [0.05, 0.22]]\n", 5000);
+  EXPECT_NEAR(static_cast<double>(prism.particles.value), 5000.0, 400.0);
   // Wider above, layers are whole: so thick that they hold as many, a little denser or looser, too.
   const report::Estimate widening = found(frustum + "0.1\ntop_diameter = 0.2\n", 1000);
   EXPECT_NEAR(static_cast<double>(widening.particles.value), 1000.0, 20.0);

@@ -312,6 +312,7 @@ TEST(Judge, AnEnergyThatGrowsFromLayerToLayerEndsTheRun) {
   EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 0.1, 5e-3, 0.1})));   // one is quiet
   EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-2, 2e-2, 2.1e-2, 0.1, 0.1, 0.1})));  // less than five times
   EXPECT_NO_THROW(report::check_energy(scene, layers_of({1e-6, 1e-6, 1e-6, 9e-3, 9e-3, 9e-3})));  // nothing to speak of
+  EXPECT_NO_THROW(report::check_energy(scene, layers_of({0, 0, 0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1}), 3));  // taken over
   try {
     report::check_energy(scene, layers_of({1e-3, 2e-3, 1e-3, 5e-3, 0.02, 0.03, 0.04}));
     ADD_FAILURE();

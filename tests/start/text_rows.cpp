@@ -59,6 +59,12 @@ TEST_F(TextRowsOf, CsvMayHaveBlanksAndVelocities) {
   EXPECT_EQ(found.left, "1 other column");
 }
 
+TEST_F(TextRowsOf, CsvHasUnitsOfVelocitiesToo) {
+  const TextRows found = csv("x,y,z,r,vx [mm/s],vy_cm/s,vz (m/s),wx [rad/s],wy,wz\n1,2,3,0.5,4,5,6,7,8,9\n");
+  EXPECT_THAT(found.rows.velocity, ElementsAre(Vec3{0.004, 0.05, 6}));
+  EXPECT_THAT(found.rows.spin, ElementsAre(Vec3{7, 8, 9}));
+}
+
 TEST_F(TextRowsOf, CsvOfThePlaneNeedsNoZ) {
   EXPECT_THAT(csv("0.1,0.2,0.01\n", 2).rows.position, ElementsAre(Vec3{0.1, 0.2, 0.0}));
   EXPECT_THAT(csv("x,y,r\n0.1,0.2,0.01\n", 2).rows.radius, ElementsAre(0.01));
@@ -137,7 +143,7 @@ TEST(BadTextRows, AreRefusedWithFileAndLine) {
     }
     ++files;
   }
-  EXPECT_EQ(files, 19);
+  EXPECT_EQ(files, 20);
 }
 
 TEST(BadTextRows, SayThatThereIsNoFile) { EXPECT_THROW((void)kind_of("/nowhere/rows.csv"), Error); }

@@ -136,11 +136,12 @@ class Pack:
         pack.pair_contacts, pack.wall_contacts = made.pair_contacts, made.wall_contacts
         pack.pairs, pack.forces = pack.pair_contacts["pair"], pack.pair_contacts["force"]
         summary = json.loads(made.summary)
-        pack._tell({**summary["target"], **summary["achieved"]}, summary["audit"], summary["provenance"])
+        told = {**summary["target"], **summary["achieved"]}
+        pack._tell({name: math.inf if value is None else value for name, value in told.items()}, summary["audit"], summary["provenance"])
         if pack.components:
             pack.component = made.component
         pack.rest = {name: one["value"] for name, one in summary["rest"].items()}
-        pack.rest |= {f"{name}_limit": one["limit"] for name, one in summary["rest"].items()}
+        pack.rest |= {f"{name}_limit": math.inf if one["limit"] is None else one["limit"] for name, one in summary["rest"].items()}
         pack.rest["missed"] = "\n".join(summary["missed"])
         rows = summary["layers"]
         pack.layers = {name: [row[name] for row in rows] for name in (rows[0] if rows else ()) if name != "layer"}

@@ -10,7 +10,7 @@ import base64
 import html
 import tempfile
 from pathlib import Path
-from typing import Any, Sequence, Union
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 
@@ -108,7 +108,7 @@ def facts(pack: Pack, analysis: dict[str, Any]) -> str:
 def warning(pack: Pack) -> str:
     """What keeps the pack from being what was wanted, a paragraph each, or nothing."""
     words = []
-    if not pack.summary["reached"]:
+    if not pack.summary["reached"] and by_height(pack):
         words.append(f'The pack is lower than its target: {length(pack.summary["height"])} of {length(pack.size[-1])}, stopped by '
                      f'{html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the target height are too small.')
     words += [html.escape(line) for line in pack.rest.get("missed", "").splitlines() if not line.startswith("container.size:")]
@@ -160,7 +160,7 @@ MISSING = {
     "pairs": "The pack is too small for a pair distribution.",
     "coordination": "No particle touches another.", "forces": "Too few contacts for a distribution of forces.",
     "rose": "No contact orientations: the pack was written without output.contacts = true, or has too few contacts.",
-    "settling": "No history: the time series NAME.steps.csv is not beside the pack."}
+    "settling": "No history: the time series NAME.steps.csv of this run is not beside the pack."}
 
 
 def plots(pack: Pack, analysis: dict[str, Any], folder: Path) -> str:
@@ -194,24 +194,37 @@ def adapt(path: Path) -> None:
     path.write_text(text[:start] + style + text[start:])
 
 
+def by_height(pack: Pack) -> bool:
+    """Was a height asked for, and not a number of particles or a layer alone?"""
+    return "target_particles" not in pack.summary and float(pack.scene()["layers"].get("duration", 1.0)) > 0.0
+
+
+def against(words: str, target: Optional[float], there: float, shown: str) -> list[str]:
+    """A row of what was asked for, if anything was, and what came."""
+    if target is None:
+        return [words, "–", shown, "–"]
+    return [words, number(target), shown, percent(there, target)]
+
+
 def comparison(pack: Pack, analysis: dict[str, Any]) -> str:
     """Targets beside what was achieved."""
-    made, inserted = pack.summary, float(np.mean(pack.layers["achieved_fraction"]))
+    made = pack.summary
+    inserted = [fraction for fraction in pack.layers["achieved_fraction"] if fraction > 0.0]   # none of layers taken over
     scale, unit = length_unit(made["target_height"])
     rows = [["The pack"],
-            ["particles", "–", number(pack.count), "–"],
-            [f"height [{unit}]", number(scale * made["target_height"]), number(scale * made["height"], 5),
-             percent(made["height"], made["target_height"])],
-            ["φ of a layer when inserted", number(made["target_fraction"]), number(inserted, 5),
-             percent(inserted, made["target_fraction"])],
+            against("particles", made.get("target_particles"), pack.count, number(pack.count)),
+            against(f"height [{unit}]", scale * made["target_height"] if by_height(pack) else None, scale * made["height"],
+                    number(scale * made["height"], 5)),
+            *([against("φ of a layer when inserted", made["target_fraction"], float(np.mean(inserted)), number(float(np.mean(inserted)), 5))]
+              if inserted else []),
             ["φ below the target height", "–", f"{pack.phi:.4f}", "–"],
-            ["φ of the bulk", "–", f"{pack.phi_bulk:.4f}", "–"],
+            against("φ of the bulk", made.get("target_phi_bulk"), pack.phi_bulk, f"{pack.phi_bulk:.4f}"),
             ["porosity of the bulk, 1 − φ", "–", f"{pack.porosity_bulk:.4f}", "–"],
             ["void ratio of the bulk, (1 − φ) / φ", "–", number(pack.void_ratio_bulk if pack.phi_bulk else None), "–"]]
     for one in analysis.get("composition", {}).get("components", []):
         index = "–" if one["lacey_index"] is None else f"{one['lacey_index']:.3f} ± {one['lacey_error']:.3f}"
         rows += [[f"Component {html.escape(one['name'])}"], ["particles", "–", number(one["count"]), "–"],
-                 ["mass [kg]", "–", number(one["mass"], 6), "–"], ["mixing, Lacey's index (1: by chance)", "–", index, "–"]]
+                 against("mass [kg]", one.get("target_mass"), one["mass"], number(one["mass"], 6)), ["mixing, Lacey's index (1: by chance)", "–", index, "–"]]
     for kind, match in analysis["sizes"].items():
         rows += size_rows(kind, match, 2.0 * pack.radius.max())
     return table(["", "target", "achieved", "difference"], rows, "target and achieved")
@@ -237,9 +250,10 @@ def protocol(pack: Pack) -> str:
     window, settled = dynamics.get("window", 0), dynamics.get("stop") == "settled"
     return listed([
         ("time step", quantity(made["time_step"], "s", 6)),
-        ("layers", f"{len(pack.layers['inserted'])} of {length(layers['thickness'])}"),
-        ("duration of a layer", quantity(layers["duration"], "s") + (" at most" if settled else "")),
-        ("window", f"the {number(window)} newest layers move" if window else "none: all move"),
+        *([("layers", f"{len(pack.layers['inserted'])} of {length(layers['thickness'])}"),
+           ("duration of a layer", quantity(layers["duration"], "s") + (" at most" if settled else "")),
+           ("window", f"the {number(window)} newest layers move" if window else "none: all move")]
+          if layers["duration"] > 0.0 else [("layers", "one, inserted and not moved")]),
         ("final relaxation",
          f"{number(made['relaxations'])}, {number(made['relaxation_steps'])} steps" if made["relaxations"] else "none"),
         ("simulated", f"{quantity(made['duration'], 's')} in {number(made['steps'])} steps"),
@@ -294,7 +308,8 @@ def checks(pack: Pack) -> str:
             ["no wall penetrated beyond half a radius", f"{number(audit['worst_wall_penetration'], 3)} at most",
              verdict(audit["worst_wall_penetration"] > 0.5)],
             *rest(pack),
-            ["the target height was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
+            [f"the {'target height' if by_height(pack) else 'number of particles' if 'target_particles' in pack.summary else 'fraction of the layer'} "
+             "was reached", f"stopped by {html.escape(pack.summary['stop_reason'])}", verdict(not pack.summary["reached"])]]
     return table(["check", "found", "met"], rows, "checks")
 
 
@@ -302,7 +317,7 @@ def ledger(pack: Pack) -> str:
     """Where the energy of the particles that moved last has gone."""
     steps = pack.steps()
     if not steps or "dissipated" not in steps:
-        return '<p class="note">No energy ledger: the time series NAME.steps.csv is not beside the pack.</p>'
+        return '<p class="note">No energy ledger: the time series NAME.steps.csv of this run is not beside the pack.</p>'
     parts = ("kinetic energy", "rotational energy", "potential energy", "elastic energy", "dissipated")
     rows = [[name if name != "rotational energy" else "of which rotational", quantity(float(steps[name][-1]), "J")] for name in parts]
     return table(["energy of the moving particles at the end", ""], rows, "energy ledger")
