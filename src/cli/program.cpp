@@ -143,8 +143,9 @@ int use_scene(const comm::Comm& comm, const Request& request) {
   comm::petsc_options(in.petsc.options);
   const scene::Scene scene = scene::build(in);  // pure: all ranks throw the same
   expect_memory(forecast::memory_a_rank(scene, comm.size()));
-  if (request.command == Command::run && in.ensemble.sets * in.ensemble.packs > 1)
-    return ensemble::make_ensemble(comm, in, request.run);
+  const bool many = in.ensemble.sets * in.ensemble.packs > 1;
+  if (many) (void)ensemble::members(in);  // have they seeds?
+  if (request.command == Command::run && many) return ensemble::make_ensemble(comm, in, request.run);
   const int on_machine = comm.ranks_on_machine();
   if (comm.rank() == 0) {
     for (const std::string& words : forecast::warnings_of(scene)) log::warn(words);

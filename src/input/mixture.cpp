@@ -91,16 +91,22 @@ Input scene_of(const Node& table, const Node* particles, const Document& documen
   }
 }
 
-Component component_of(const Node& table, const Node* particles, const Document& document, const Input& in) {
+/// Its name and share, which one component has as several do.
+Component named(const Node& table) {
   const Node* name = entry(table, "name");
   if (name == nullptr) fail(table.place, "component.name", "is missing; give a word by which the component is known");
   Component one;
   one.name = name_at("component.name", *name);
-  if (std::ranges::find(in.components, one.name, &Component::name) != in.components.end())
-    fail(name->place, "component.name",
-         fmt::format("there is a component {} already; give another name", describe(*name)));
   if (const Node* share = entry(table, "share"))
     one.share = number_at("component.share", *share, tables::ratio, from_zero);
+  return one;
+}
+
+Component component_of(const Node& table, const Node* particles, const Document& document, const Input& in) {
+  Component one = named(table);
+  if (std::ranges::find(in.components, one.name, &Component::name) != in.components.end())
+    fail(entry(table, "name")->place, "component.name",
+         fmt::format("there is a component \"{}\" already; give another name", one.name));
   const Input part = scene_of(table, particles, document, one.name, in);
   if (part.particles.radius.distribution == SizeDistribution::list)
     fail(table.place, "component.radius.distribution",
@@ -327,6 +333,7 @@ MixtureTables split_mixture(Document& document) {
   const Node* base = tables.particles ? &*tables.particles : nullptr;
   document.put("particles", merged(base, first, of_particles));
   if (tables.components.size() > 1) return tables;
+  (void)named(first);
   if (!tables.pairs.empty())
     fail(tables.pairs.front().place, "pair", "is of two components, and there is one; remove it");
   if (!tables.strata.empty())

@@ -65,12 +65,13 @@ std::string to_json(const observe::Analysis& a, int dimension, std::uint64_t pac
                               {"core", {{"from_wall", a.radial.from_walls}, {"solid_fraction", a.radial.core}}}};
     if (!a.radial.from_inner.values.empty()) root["radial_profile"]["from_inner_wall"] = profile(a.radial.from_inner);
   }
+  const auto of_cells = [&](double value) { return a.local.counted > 0 ? Json(value) : Json(); };  // null: of none
   root["local_density"] = {{"counted", a.local.counted},
                            {"left_out", a.local.left_out},
-                           {"mean", a.local.mean},
-                           {"porosity", porosity(a.local.mean)},
-                           {"void_ratio", void_ratio(a.local.mean)},
-                           {"sd", a.local.sd},
+                           {"mean", of_cells(a.local.mean)},
+                           {"porosity", of_cells(porosity(a.local.mean))},
+                           {"void_ratio", of_cells(void_ratio(a.local.mean))},
+                           {"sd", of_cells(a.local.sd)},
                            {"distribution", profile(a.local.distribution)}};
   root["contacts"] = {{"coordination", a.rest.network.coordination},
                       {"loose", a.rest.network.loose},
@@ -130,10 +131,12 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     line("solid fraction three diameters from the wall", a.radial.core);
     line("porosity of it", porosity(a.radial.core));
   }
-  line("local solid fraction in the bulk, mean", a.local.mean);
-  line("local solid fraction in the bulk, standard deviation", a.local.sd);
-  line("porosity of that mean", porosity(a.local.mean));
-  line("void ratio of that mean", void_ratio(a.local.mean));
+  if (a.local.counted > 0) {
+    line("local solid fraction in the bulk, mean", a.local.mean);
+    line("local solid fraction in the bulk, standard deviation", a.local.sd);
+    line("porosity of that mean", porosity(a.local.mean));
+    line("void ratio of that mean", void_ratio(a.local.mean));
+  }
   line("force on the floor / weight", a.weight > 0.0 ? a.floor_force / a.weight : 0.0);
   line("mean normal force in the bulk [N]", a.forces.mean_normal_force);
   const auto v = static_cast<std::size_t>(dimension - 1);

@@ -150,5 +150,7 @@ def ensemble(scene: Union[Scene, Source], folder: Union[str, Path], comm: Option
     with counted(Path(folder), what, progress if core.rank(here) == 0 else None, fresh=not restart):
         code = core.make_ensemble(what.made, here, str(folder), force, restart, max_hours)
     if code not in (0, 3):
-        raise Problem(f"{folder}: packs of the ensemble failed (code {code}); their logs say why")
+        failed = Problem(f"{folder}: packs of the ensemble failed (code {code}); their logs say why")
+        failed.code = code
+        raise failed
     return Ensemble(Path(folder), what.name, code)
