@@ -103,6 +103,16 @@ TEST_F(Start, WithNothingAskedItIsEqualToTheBit) {
   EXPECT_EQ(record.layers.front().stop_reason, "taken over");
 }
 
+// Short layers end in motion. What was taken over has no energy, and beside it theirs would seem to grow.
+TEST_F(Start, EnergyGrowsFromTheLayersOfThisRun) {
+  const report::RunRecord first = make("base", "", {"container.size=[0.3,0.3,0.12]"});
+  ASSERT_GE(first.layers.size(), 3U);
+  const report::RunRecord record =
+      go_on({"container.size=[0.3,0.3,0.24]", "layers.duration=0.17", "layers.velocity=[0,0,0]"});
+  ASSERT_GE(record.layers.size(), first.layers.size() + 3U);
+  EXPECT_GT(record.layers.back().kinetic_per_mgd, 0.01);
+}
+
 // The springs of the contacts are in the pack: rest is the same as before, and is judged.
 TEST_F(Start, WhatContactsRememberGoesOnIfThePackHasIt) {
   const report::RunRecord first = make("base", "", {"output.contacts=true"});
