@@ -4,6 +4,7 @@ import contextlib
 import gc
 import io
 import json
+import math
 import os
 import re
 import shutil
@@ -117,8 +118,8 @@ class Scenes(unittest.TestCase):
     def test_toml_is_read_as_it_was(self):
         odd = {"a": 1, "b": [1.5, -0.0, 1e-300], "c": 'a "b" \\ \n\tü\x01', "t": {"k": True, "in": {"x y": [["3 mm", 0]]}}}
         self.assertEqual(tomllib.loads(toml.dumps(odd)), odd)
-        numbers = {"n": np.int32(3), "x": np.float32(0.5), "v": np.arange(3.0)}
-        self.assertEqual(tomllib.loads(toml.dumps(numbers)), {"n": 3, "x": 0.5, "v": [0.0, 1.0, 2.0]})
+        numbers = {"n": np.int32(3), "x": np.float32(0.5), "v": np.arange(3.0), "b": np.bool_(True)}
+        self.assertEqual(tomllib.loads(toml.dumps(numbers)), {"n": 3, "x": 0.5, "v": [0.0, 1.0, 2.0], "b": True})
 
     def test_errors_have_key_and_line(self):
         cases = [(TEXT.replace("size =", "siez ="), "container.siez", 3), (TEXT + "[jammin]\n", "jammin", 21), ("a = = 1\n", "", 1),
@@ -137,6 +138,9 @@ class Scenes(unittest.TestCase):
         for wrong in ("none.toml", "."):
             with self.assertRaises(packmpi.Problem):
                 packmpi.scene(wrong)
+        for wrong in ("", "folder/name"):
+            with self.assertRaisesRegex(packmpi.SceneError, "no name of files"):
+                packmpi.scene(KEYS, name=wrong)
         with self.assertRaises(ValueError):   # a SceneError is one
             packmpi.scene("a = 1\n")
 
@@ -204,6 +208,17 @@ class Files(unittest.TestCase):
                      lambda: packmpi.run("bed.toml", folder="x", restart="none.hdf")):
             with self.assertRaises(packmpi.Problem):
                 wish()
+
+    def test_what_is_placed_and_not_moved(self):
+        pack = packmpi.run({"container": {"size": [0.1, 0.1, 0.1]}, "layers": {"duration": 0, "fraction": 0.1},
+                            "particles": {"density": 2650, "youngs_modulus": 1e8, "poisson_ratio": 0.2,
+                                          "radius": {"distribution": "equal", "value": 0.008}}}, folder="placed")
+        self.assertEqual(pack.rest["support_limit"], math.inf)   # asked for nothing, as the file says
+        self.assertEqual(packmpi.read("placed/scene.hdf").rest, pack.rest)
+        pack.report("placed/page.html")
+        page = Path("placed/page.html").read_text(encoding="utf-8")
+        self.assertIn("one, inserted and not moved", page)
+        self.assertIn("the fraction of the layer was reached", page)
 
     def test_ensemble(self):
         scene = packmpi.scene("bed.toml", set={"ensemble.packs": 2, "container.size": [0.2, 0.2, 0.05]})

@@ -5,6 +5,7 @@ from os import PathLike, fspath
 from typing import Any, Mapping, Optional, Sequence, Union
 
 from .core import core, number_of
+from .problem import SceneError
 from .toml import dumps, scalar
 
 Source = Union[str, "PathLike[str]", Mapping[str, Any]]
@@ -72,6 +73,10 @@ def scene(source: Source, *, set: Optional[Mapping[str, Any]] = None, seed: Opti
 
     Numbers are in SI units; a text with a unit, "20 mm", does as well. Raises SceneError with file, line and key.
     """
+    if not name or "/" in name:
+        error = SceneError(f"name: {name!r} is no name of files; give a word, and folder= where they are to be")
+        error.code, error.key = 2, "name"
+        raise error
     changes = [f"{key}={scalar(value, key)}" for key, value in (set or {}).items()]
     if seed is not None:
         changes.append(f"seed={int(seed)}")
