@@ -109,14 +109,6 @@ class Reading:
         return any(abs(self.off(column)) > tables.PAPER_SDS * (1.0 + 1.0 / math.sqrt(len(self.values(column)))) for column in self.measured) or \
             any(self.least_off(column) > 2.0 * tables.PAPER_SDS for column in self.bounds)
 
-    def surely_excluded(self, packs):
-        """By a column of so many packs or more, whose mean is beyond 2 sd by more than three of its own standard errors?"""
-        def errors(column):
-            values = self.values(column)
-            beyond = (abs(self.off(column)) - tables.PAPER_SDS) * tables.sd(self.paper[column])
-            return beyond * math.sqrt(len(values)) / max(tables.sd(values), 1e-9)
-        return any(len(self.values(column)) >= packs and errors(column) > 3.0 for column in self.measured)
-
     @property
     def worst(self):
         return max(abs(self.off(column)) for column in self.measured)
@@ -216,17 +208,26 @@ def section(data):
     scatters = sorted(tables.sd(one.values(c)) for one in readings for c in SPACE if len(one.values(c)) > 1)
     words = f"""The paper's Algorithm 1 leaves open where a layer's region begins, whether it ends at H_d, when the loop stops, and what V in eq. (22)
 is. `scripts/study/readings.py` tries them. {len(readings)} readings: **{len(meeting) or "none"} meets all eight columns within 2 sd**; {len(excluded)} are excluded, having a column that is off by more than
-2 + 2 / sqrt(packs) sd. {len([one for one in excluded if one.surely_excluded(10)])} of them by a column of ten packs, beyond 2 sd by more than three of its standard errors, and {len([one for one in excluded if one.surely_excluded(3)])} by one of three packs or more. {len(flat)} meet the four columns in 2D (seeds: {seeds_of(readings, FLAT)}); of them the nearest in 3D (seeds: {seeds_of(readings, SPACE)}) begins at {nearest.way.words}, is
+2 + 2 / sqrt(packs) sd, the others by less. {packs_a_column(readings)} {len(flat)} meet the four columns in 2D (seeds: {seeds_of(readings, FLAT)}); of them the nearest in 3D (seeds: {seeds_of(readings, SPACE)}) begins at {nearest.way.words}, is
 {STOPS[nearest.stop][1]}, V to {VOLUMES[nearest.volume]}, and has {tables.mean(nearest.values(farthest)):.3f} where the paper has {tables.mean(nearest.paper[farthest]):.3f} in {farthest[0]} with rotation {farthest[1]}: {abs(nearest.off(farthest)):.0f} of the paper's sd.
 **Nearest of all** by the mean square of the eight means: begins at {best.way.words}, {STOPS[best.stop][1]}, V to {VOLUMES[best.volume]}; {best.met} of 8 columns
 within 2 sd, rms {best.score:.1f}, and at worst {tables.mean(best.values(missed)):.3f} where the paper has {tables.mean(best.paper[missed]):.3f} ({missed[0]}, rotation {missed[1]}: {abs(best.off(missed)):.1f} sd); it inserts {best.count(("5.1", "5.2"))}
 discs (the paper: typically 1300) and {best.count(("5.3", "5.4"))} spheres (typically 7500 to 8000). Seeds of one
-reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), and by {scatters[-1]:.3f} at most, where one layer more or less hangs on the highest sphere. Below are the readings of which most columns were run, and of them the nearest:
+reading vary by {scatters[len(scatters) // 2]:.4f} in 3D (the median of {len(scatters)} standard deviations of two seeds or more), and by {scatters[-1]:.3f} at most, where one layer more or less hangs on the highest sphere. Below are the {SHOWN} nearest:
 the number of packs in brackets, **bold** what is off by more than 2 sd; rms and worst are the distances of the means in the paper's standard deviations. "Discs" and
 "spheres" are particles inserted, from the least to the most. The row of all eight columns is packmpi as it is; "i" is an independent serial program
 ([data/readings_independent.csv](data/readings_independent.csv)); ">" is from a run that was cut short: with V up to the surface phi rises layer by layer, and it had that
 already. Packs: [data/readings.csv](data/readings.csv). "The highest top", "at H_d", V to H_d is `layers.region = "container"`.""".splitlines()
     return [BEGIN, *words, "", *table_of(readings[:SHOWN]), END]
+
+
+def packs_a_column(readings):
+    """How many packs a column of a reading has, in words."""
+    counts = [len(one.values(column)) for one in readings for column in COLUMNS]
+    least, most = min(counts), max(counts)
+    if least == most:
+        return f"Each reading has {least} packs of each of the eight columns."
+    return f"A column of a reading has {least} to {most} packs."
 
 
 def chapter(data):
