@@ -2,7 +2,7 @@
 """Two builds against each other, in turn on one core: rows of Markdown, with spread.
 
 usage: scripts/study/bench.py --builds build-before build [--bench step_bench bed_bench ...] [--job input/quickstart.toml ...]
-                              [-n 7] [--core 0] [--set KEY=VALUE ...] [--doc FILE --block NAME]
+                              [-n 7] [--core 0] [--set KEY=VALUE ...] [--set-second KEY=VALUE ...] [--doc FILE --block NAME]
 
 A benchmark is a program of tests/bench (BUILD/tests/bench/NAME, made by scripts/build.sh all), "NAME:ARGUMENTS" with others than
 those of BENCHES; a job is a whole run of BUILD/packmpi, in CPU seconds. A pair is both builds one after the other, the first of
@@ -33,8 +33,8 @@ BENCHES = {
 class Build:
     """A build folder and what its program says of itself."""
 
-    def __init__(self, folder):
-        self.folder = Path(folder).resolve()
+    def __init__(self, folder, second):
+        self.folder, self.second = Path(folder).resolve(), second
         said = subprocess.run([self.folder / "packmpi", "--version"], env=measuring.ENVIRONMENT, text=True, capture_output=True, check=True).stdout
         self.commit = re.search(r"\(([^,]+),", said)[1]
 
@@ -87,7 +87,8 @@ def job(options, scene, digests):
     """The same for a whole run; the digest of its pack goes into `digests`."""
     def measure(build):
         with tempfile.TemporaryDirectory() as folder:
-            _, seconds = run(options.core, build.folder / "packmpi", scene, "-q", "-o", folder, *(word for one in options.set for word in ("--set", one)),
+            changes = options.set + (options.set_second if build.second else [])
+            _, seconds = run(options.core, build.folder / "packmpi", scene, "-q", "-o", folder, *(word for one in changes for word in ("--set", one)),
                              codes=(0, 3))
             told, _ = run(options.core, build.folder / "packmpi", "info", Path(folder) / f"{Path(scene).stem}.hdf")
         digests.setdefault(scene, set()).add(re.search(r"digest of the particles (\w+)", told)[1])
@@ -111,6 +112,8 @@ def parse():
     parser.add_argument("--bench", nargs="+", default=[], help='of tests/bench, "NAME" or "NAME:ARGUMENTS"')
     parser.add_argument("--job", nargs="+", default=[], help="scenes to be run as a whole")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="changes the scenes of jobs")
+    parser.add_argument("--set-second", action="append", default=[], metavar="KEY=VALUE", help="the same for the second build alone, of keys that "
+                        "the first does not know")
     parser.add_argument("-n", "--pairs", type=int, default=7)
     parser.add_argument("--core", type=int, default=0)
     parser.add_argument("--doc", type=Path, help="document whose block is written anew")
@@ -123,7 +126,7 @@ def parse():
 
 def main():
     options = parse()
-    builds = [Build(folder) for folder in options.builds]
+    builds = [Build(folder, second) for folder, second in zip(options.builds, (False, True))]
     digests, measures = {}, []
     for ready in [bench(options, word) for word in options.bench] + [job(options, scene, digests) for scene in options.job]:
         measures += compare(builds, options.pairs, *ready)
