@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/text.hpp"
 #include "start/text_file.hpp"
 #include "start/text_rows.hpp"
 #include "tables/units.hpp"
@@ -83,8 +84,9 @@ int exponent_of(const TextFile& file, std::string_view unit, std::string_view na
   const auto found = std::ranges::find(quantity.units, unit, &tables::Unit::name);
   if (found == quantity.units.end()) {
     const std::string_view other = quantity.example.substr(quantity.example.find(' ') + 1);
-    file.refuse(fmt::format("column {} is in \"{}\", which is not known; write its name as \"{}\" ({}){}", name, unit,
-                            name, quantity.si, other == quantity.si ? "" : fmt::format(" or \"{}_{}\"", name, other)));
+    file.refuse(fmt::format("column {} is in \"{}\", which is not known; write its name as \"{}\" ({}){}", name,
+                            text::printable(unit), name, quantity.si,
+                            other == quantity.si ? "" : fmt::format(" or \"{}_{}\"", name, other)));
   }
   return found->exponent;
 }
