@@ -68,10 +68,10 @@ double fit_extent(const scene::Scene& scene, bool grows, double particles, doubl
   const double top = flat ? vessel.polygon->top() : vessel.is_mesh() ? vessel.interior->high()[2] : vessel.size[0];
   const double height = vessel.level(particles * mean_volume(scene) / fraction) + left;
   if (height <= top) return height;
-  refuse(fmt::format(
-      "{} particles do not fit into this vessel, which takes about {:.0f}{}", particles,
-      vessel.volume_between(0.0, top - left) * fraction / mean_volume(scene),
-      vessel.is_mesh() ? " below its top (the walls of a prism, or around obstacles, go on in its file)" : ""));
+  refuse(
+      fmt::format("{} particles do not fit into this vessel, which takes about {:.0f}{}", particles,
+                  vessel.volume_between(0.0, top - left) * fraction / mean_volume(scene),
+                  vessel.is_mesh() ? " below its top (a prism that was read ends at its H_d: ask of its file)" : ""));
 }
 
 // Area of the floor on which the scene's height takes so many particles.

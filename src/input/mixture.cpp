@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "config/radius_range.hpp"
 #include "config/restitution.hpp"
+#include "config/strata.hpp"
 #include "config/vessel.hpp"
 #include "geometry/volume.hpp"
 #include "input/array_tables.hpp"
@@ -217,7 +218,7 @@ void check_masses(const MixtureTables& tables, const Input& in) {
     double lightest = HUGE_VAL;
     for (std::size_t c = 0; c < in.components.size(); ++c) {
       const Component& of = in.components[c];
-      if (!((one.shares.empty() ? of.share : one.shares[c]) > 0.0)) continue;
+      if (!(share_in(in, one, c) > 0.0)) continue;
       const double r = radius_range(of.particles.radius).smallest;
       lightest = std::min(lightest, of.particles.density * geometry::volume(in.container.dimension, r));
     }
@@ -267,9 +268,8 @@ void envelop(Input& in) {
       const double end = s.top.value_or(in.container.size.back());
       const double part = s.mass ? *s.mass : end - below;
       double sum = 0.0;
-      for (std::size_t c = 0; c < in.components.size(); ++c)
-        sum += s.shares.empty() ? in.components[c].share : s.shares[c];
-      share += part * (s.shares.empty() ? in.components[k].share : s.shares[k]) / sum;
+      for (std::size_t c = 0; c < in.components.size(); ++c) sum += share_in(in, s, c);
+      share += part * share_in(in, s, k) / sum;
       below = end;
     }
     return in.strata.empty() ? in.components[k].share : share;

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/voids.hpp"
+#include "config/strata.hpp"
 #include "input/time_step.hpp"
 #include "scene/expectation.hpp"
 #include "scene/mixture.hpp"
@@ -135,7 +136,7 @@ void add_components(const input::Input& in, const observe::Composition& composit
   for (std::size_t k = 0; k < composition.parts.size(); ++k) {
     const bool asked = in.strata.empty() ? in.components[k].share > 0.0
                                          : std::ranges::any_of(in.strata, [&](const input::Stratum& one) {
-                                             return (one.shares.empty() ? in.components[k].share : one.shares[k]) > 0.0;
+                                             return input::share_in(in, one, k) > 0.0;
                                            });
     if (!asked || composition.parts[k].count > 0) continue;
     missed.push_back(

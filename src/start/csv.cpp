@@ -44,18 +44,11 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
-// "Radius [mm]" as radius, mm.
-std::vector<std::string> words_in(std::string_view cell) {
-  std::vector<std::string> words;
-  bool inside = false;
-  for (const char c : cell) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool letter = std::isalnum(byte) != 0 || byte >= 0x80;
-    if (letter && !inside) words.emplace_back();
-    if (letter) words.back() += c;
-    inside = letter;
-  }
-  return words;
+// "Radius [mm]" begins with Radius; "" if a cell has no word.
+std::string_view first_word(std::string_view cell) {
+  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0; };
+  const auto begin = std::ranges::find_if(cell, letter);
+  return {begin, std::find_if_not(begin, cell.end(), letter)};
 }
 
 std::string lowered(std::string word) {
@@ -97,8 +90,8 @@ Table table_of_names(const TextFile& file, std::string_view line, int dimension)
   const std::vector<std::string_view> cells = cells_of(line, table.separator);
   table.cells = cells.size();
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    std::vector<std::string> words = words_in(cells[k]);
-    std::string name = words.empty() ? "" : lowered(words[0]);
+    const std::string_view word = first_word(cells[k]);
+    std::string name = lowered(std::string(word));
     const bool diameter = name == "diameter" || name == "d";
     if (diameter || name == "r") name = "radius";
     const auto found = std::ranges::find(names, name);
@@ -109,7 +102,7 @@ Table table_of_names(const TextFile& file, std::string_view line, int dimension)
     Place& place = table.of[static_cast<std::size_t>(found - names.begin())];
     if (place.cell >= 0) file.refuse(fmt::format("column {} is there twice; leave one", name));
     const tables::Quantity& quantity = quantity_of(found - names.begin());
-    place = {static_cast<int>(k), exponent_of(file, unit_behind(cells[k], words[0]), name, quantity), diameter};
+    place = {static_cast<int>(k), exponent_of(file, unit_behind(cells[k], word), name, quantity), diameter};
   }
   for (const Column needed : {col_x, col_y, col_z, col_radius}) {
     if (table.of[needed].cell >= 0 || (needed == col_z && dimension == 2)) continue;

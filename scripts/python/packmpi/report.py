@@ -111,7 +111,7 @@ def warning(pack: Pack) -> str:
     if not pack.summary["reached"] and by_height(pack):
         words.append(f'The pack is lower than its target: {length(pack.summary["height"])} of {length(pack.size[-1])}, stopped by '
                      f'{html.escape(pack.summary["stop_reason"])}. Solid fractions that count to the target height are too small.')
-    words += [html.escape(line) for line in pack.rest.get("missed", "").splitlines() if not line.startswith("container.size:")]
+    words += [html.escape(line) for line in pack.rest.get("missed", "").splitlines() if not line.startswith(("container.size:", "container.height:"))]
     return "".join(f'<p class="warning" role="alert"><b class="bad">Missed:</b> {line}</p>' for line in words)
 
 

@@ -7,7 +7,7 @@ from .problem import SceneError
 
 def scalar(value: Any, key: str) -> str:
     """A value as TOML has it: numbers of numpy, too."""
-    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):   # of numpy, which need not be there
+    if type(value).__name__ in ("bool", "bool_"):   # the latter of numpy, which need not be there
         return "true" if value else "false"
     if isinstance(value, Integral):
         return str(int(value))
