@@ -44,6 +44,9 @@ std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns,
   return here;
 }
 
+/// [m]: of what the maps tell of: H_d, or a lid below it.
+double upper_end(const geometry::Container& box) { return std::min(box.height(), box.lid.value_or(HUGE_VAL)); }
+
 std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                          const ColumnNumbering& columns) {
   const particles::Store* one = &store;
@@ -55,12 +58,13 @@ std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, 
 std::vector<ColumnValue> volumes(const particles::Store& store, const scene::Scene& scene,
                                  const ColumnNumbering& columns) {
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
+  const double end = upper_end(scene.container);
   std::vector<ColumnValue> terms;
   terms.reserve(static_cast<std::size_t>(store.owned()));
   for (LocalIndex i = 0; i < store.owned(); ++i) {
     const Vec3 x = store.position(i);
-    terms.push_back({columns.column(x), geometry::volume_below(scene.container.dimension, store.radius(i), x[vertical],
-                                                               scene.container.height())});
+    terms.push_back(
+        {columns.column(x), geometry::volume_below(scene.container.dimension, store.radius(i), x[vertical], end)});
   }
   return terms;
 }
@@ -69,32 +73,34 @@ std::vector<ColumnValue> virials(const particles::Store& store, const scene::Sce
                                  const neighbor::PairList& pairs, const dynamics::StoredView& stored,
                                  const ColumnNumbering& columns) {
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
+  const double end = upper_end(scene.container);
   std::vector<ColumnValue> terms;
   each_contact(store, scene, pairs, stored, [&](const ContactForce& contact) {
-    if (!(contact.middle[vertical] < scene.container.height())) return;
+    if (!(contact.middle[vertical] < end)) return;
     terms.push_back({columns.column(contact.middle), -contact.force[vertical] * contact.branch[vertical]});
   });
   return terms;
 }
 
-/// Volume [m3] of a column inside a round vessel up to H_d, from 32 x 32 points, or 16 x 16 at 16 heights if its walls
-/// are not straight (a point costs a search in a mesh): within a percent of a column; 0 if it is less than an eighth of
-/// the column.
+/// Volume [m3] of a column inside a round vessel up to H_d or a lid below it, from 32 x 32 points, or 16 x 16 at 16
+/// heights if its walls are not straight (a point costs a search in a mesh): within a percent of a column; 0 if it is
+/// less than an eighth of the column.
 double volume_in(const geometry::Container& box, const ColumnMaps& maps, std::int64_t column) {
   const int side = box.straight() ? 32 : 16;
   const std::int64_t row = column / maps.counts[0];
   const auto ix = static_cast<double>(column % maps.counts[0]), iy = static_cast<double>(row);
   const int floors = box.straight() ? 1 : side, points = side * side * floors;
+  const double end = upper_end(box);
   int inside = 0;
   for (int k = 0; k < points; ++k) {
     const int line = k / side % side, floor = k / (side * side);
     const double x = (ix + (k % side + 0.5) / side) * maps.widths[0];
     const double y = (iy + (line + 0.5) / side) * maps.widths[1];
-    if (box.holds(box.at(x, y, (floor + 0.5) / floors * box.height()), 0.0)) ++inside;
+    if (box.holds(box.at(x, y, (floor + 0.5) / floors * end), 0.0)) ++inside;
   }
   if (inside < points / 8) return 0.0;
   const double section = box.dimension == 3 ? maps.widths[0] * maps.widths[1] : maps.widths[0];
-  return section * inside / points * box.height();
+  return section * inside / points * end;
 }
 
 }  // namespace
@@ -121,7 +127,7 @@ ColumnMaps column_maps(const comm::Comm& comm, const particles::Store& store, co
     }
     return maps;
   }
-  const double volume = box.volume_between(0.0, box.height()) / static_cast<double>(columns.size());
+  const double volume = box.volume_between(0.0, upper_end(box)) / static_cast<double>(columns.size());
   for (double& value : maps.solid_fraction) value /= volume;
   for (double& value : maps.vertical_stress) value /= volume;
   return maps;

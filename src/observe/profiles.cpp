@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comm/exact_sum.hpp"
 #include "geometry/volume.hpp"
@@ -81,7 +82,8 @@ Segregation segregation(const Specimen& pack) {
   result.mean_radius = {.from = 0.0, .width = width, .values = comm::exact_sums(pack.comm, radii)};
   pack.comm.sum(std::span(counts));
   for (std::size_t k = 0; k < bins; ++k) {
-    if (counts[k] > 0) result.mean_radius.values[k] /= static_cast<double>(counts[k]);
+    double& mean = result.mean_radius.values[k];
+    mean = counts[k] > 0 ? mean / static_cast<double>(counts[k]) : std::numeric_limits<double>::quiet_NaN();
   }
   const std::vector<double> m = comm::exact_sums(pack.comm, moments);
   const auto n = static_cast<double>(std::max<std::int64_t>(1, pack.comm.sum(std::int64_t{pack.store.owned()})));

@@ -40,6 +40,11 @@ Json order(const observe::Order& o, int dimension) {
   return json;
 }
 
+// Share of the particles in the bulk whose cells others beyond the search might cut: the mean is of the rest.
+double without_cell(const observe::LocalDensity& local) {
+  return static_cast<double>(local.left_out) / static_cast<double>(local.counted + local.left_out);
+}
+
 Json rest(const observe::Analysis& a) {
   Json json{{"kinetic_energy", a.rest.kinetic_energy},
             {"mean_overlap", a.rest.mean_overlap},
@@ -136,6 +141,7 @@ std::string to_table(const observe::Analysis& a, int dimension) {
     line("local solid fraction in the bulk, standard deviation", a.local.sd);
     line("porosity of that mean", porosity(a.local.mean));
     line("void ratio of that mean", void_ratio(a.local.mean));
+    if (a.local.left_out > 0) line("share of particles without a cell of their own", without_cell(a.local));
   }
   line("force on the floor / weight", a.weight > 0.0 ? a.floor_force / a.weight : 0.0);
   line("mean normal force in the bulk [N]", a.forces.mean_normal_force);

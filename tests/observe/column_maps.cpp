@@ -77,6 +77,22 @@ TEST_F(Maps, AddUpToTheMeasuresOfTheWholePack) {
   EXPECT_GT(all, 0.0);
 }
 
+TEST_F(Maps, EndAtALidBelowTheHeight) {
+  scene_.container.lid = 0.4;
+  const std::vector<Grain> grains = cloud(400);
+  const particles::Store store = testing::scattered(comm_, scene_.features.layout(), grains, Spread::all);
+  const ColumnMaps here = maps(comm_, grains, Spread::all);
+  const auto columns = static_cast<double>(map_columns(scene_));
+  EXPECT_NEAR(comm::exact_sum(comm_, here.solid_fraction) / columns,
+              density(comm_, store, scene_, bulk_of(scene_, 1.0)).phi, 1e-13);
+  double virial = 0.0;
+  each_contact(store, scene_, testing::all_pairs(store), {}, [&](const ContactForce& c) {
+    if (c.middle[2] < 0.4) virial -= c.force[2] * c.branch[2];
+  });
+  const double all = comm::exact_sum(comm_, std::array{virial});
+  EXPECT_NEAR(comm::exact_sum(comm_, here.vertical_stress) * 2.1 * 1.3 * 0.4 / columns, all, 1e-10 * all);
+}
+
 TEST_F(Maps, AreTheSameHoweverTheParticlesAreSpread) {
   const std::vector<Grain> grains = cloud(400);
   const ColumnMaps alone = maps(comm::Comm(MPI_COMM_SELF), grains, Spread::last);

@@ -262,6 +262,22 @@ TEST_F(Analysis, HexagonalClosePacked) {
   EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / std::sqrt(18.0), 1e-9);
 }
 
+// Whatever the size of particles: Voro++ alone takes corners nearer than some absolute length for one.
+TEST_F(Analysis, CellsOfPowdersAreThoseOfPebbles) {
+  for (const double scale : {1e-3, 1e-6}) {
+    Lattice fine = hcp();
+    for (Vec3& x : fine.points) {
+      for (double& one : x) one *= scale;
+    }
+    for (double& one : fine.size) one *= scale;
+    input::Input in = test::small_input(3, 1.0, scale * r);
+    in.dynamics.time_step = 1e-12;
+    const observe::Analysis a = of(fine, in, scale * range, [&](std::size_t) { return scale * r; });
+    EXPECT_EQ(a.local.left_out, 0) << scale;
+    EXPECT_NEAR(a.local.mean * std::pow(squeeze, 3), std::numbers::pi / std::sqrt(18.0), 1e-9) << scale;
+  }
+}
+
 TEST_F(Analysis, SimpleCubic) {
   const observe::Analysis a = of(simple_cubic(), 3);
   EXPECT_NEAR(a.order.q4, 0.763763, 1e-5);

@@ -44,10 +44,11 @@ def density(pack: Pack, analysis: dict[str, Any]) -> Figure:
     scale, unit = length_unit(pack.size[-1])
     edges, target = scale * edges, scale * pack.size[-1]
     figure, axes = new_figure()
-    axes.axvspan(0.2 * target, 0.8 * target, color=OTHER, alpha=0.16, linewidth=0)
+    low, high = scale * np.asarray(pack.summary["bulk"])
+    axes.axvspan(low, high, color=OTHER, alpha=0.16, linewidth=0)
     axes.stairs(values, edges, color=ACHIEVED, linewidth=1.5, baseline=None)
-    axes.hlines(pack.phi_bulk, 0.2 * target, 0.8 * target, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
-    axes.annotate(rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}", (0.5 * target, pack.phi_bulk), (0, -30),
+    axes.hlines(pack.phi_bulk, low, high, color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    axes.annotate(rf"$\phi_\mathrm{{bulk}}$ = {pack.phi_bulk:.3f}", (0.5 * (low + high), pack.phi_bulk), (0, -30),
                   textcoords="offset points", ha="center", fontsize=9)
     axes.axvline(target, color=TARGET, linestyle=(0, (6, 3)))
     axes.annotate("target height", (target, 0.02), (-4, 0), textcoords="offset points", rotation=90, ha="right",
@@ -114,7 +115,7 @@ def segregation(pack: Pack, analysis: dict[str, Any]) -> Union[Figure, None]:
     if np.ptp(pack.radius) == 0.0:
         return None
     edges, values = staircase(analysis["segregation"]["mean_radius"])
-    if np.count_nonzero(values) < 2:
+    if np.count_nonzero(values > 0.0) < 2:
         return None
     figure, axes = new_figure()
     scale, unit = length_unit(pack.size[-1])
