@@ -28,6 +28,7 @@
 #include "run/files.hpp"
 #include "run/finished.hpp"
 #include "run/make_pack.hpp"
+#include "run/start.hpp"
 #include "scene/expectation.hpp"
 #include "scene/ownership.hpp"
 #include "start/fit.hpp"
@@ -47,16 +48,23 @@ std::string effective_to_show(const input::Input& in) {
          in.effective.substr(end);
 }
 
+std::string step_words(const scene::Scene& scene) {
+  if (insertion_alone(scene.in)) return "";
+  return fmt::format("# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n", scene.time_step,
+                     scene::safe_time_step(scene.in, scene.sizes));
+}
+
 // `packmpi check`: the scene as it will be used, and what follows from it.
 int check(const comm::Comm& comm, const scene::Scene& scene) {
+  run::check_start(comm, scene);
   const scene::Ownership ownership(comm, scene.columns(), scene.in.parallel.decomposition);
   if (comm.rank() == 0) {
     const auto [nx, ny] = ownership.grid().counts();
     std::string words = fmt::format(
-        "{}\n# {} is valid.\n# time step {:g} s; limit of eq. (23) {:.3g} s for the smallest particles\n"
+        "{}\n# {} is valid.\n{}"
         "# lateral grid {} x {} columns: at most {} ranks\n# about {} particles{} (packmpi estimate)\n",
-        effective_to_show(scene.in), scene.in.file, scene.time_step, scene::safe_time_step(scene.in, scene.sizes), nx,
-        ny, run::most_ranks(scene), scene::expected_filling(scene, scene::expected_fraction(scene).value).particles,
+        effective_to_show(scene.in), scene.in.file, step_words(scene), nx, ny, run::most_ranks(scene),
+        scene::expected_filling(scene, scene::expected_fraction(scene).value).particles,
         scene.in.start ? " in all, if those of [start] are like the scene's" : "");
     for (const std::string& remark : scene.in.remarks) words += fmt::format("# {}\n", remark);
     if (const auto fines = scene::fines(scene)) words += fmt::format("# {}\n", forecast::fines_words(*fines));

@@ -169,4 +169,10 @@ void take_over(Bed& bed) {
                         start::taken_words(bed.scene, bed.progress), worst, bed.progress.height));
 }
 
+void check_start(const comm::Comm& comm, const scene::Scene& scene) {
+  if (!scene.in.start) return;
+  Bed bed(comm, scene);
+  take_over(bed);
+}
+
 }  // namespace packmpi::run

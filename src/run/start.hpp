@@ -14,4 +14,8 @@ namespace packmpi::run {
 /// Error(io_failure) if it is damaged. Cost: one reading of the pack, shared by the ranks.
 void take_over(Bed& bed);
 
+/// Takes over what [start] names, as a run would, and lets it go: throws what is wrong with it. Without [start]:
+/// nothing. Collective; as dear as the pack that is read.
+void check_start(const comm::Comm& comm, const scene::Scene& scene);
+
 }  // namespace packmpi::run

@@ -100,6 +100,7 @@ Table table_of_names(const TextFile& file, std::string_view line, int dimension)
       continue;
     }
     Place& place = table.of[static_cast<std::size_t>(found - names.begin())];
+    if (place.cell >= 0 && name == "radius") file.refuse("there are two columns of radii or diameters; leave one");
     if (place.cell >= 0) file.refuse(fmt::format("column {} is there twice; leave one", name));
     const tables::Quantity& quantity = quantity_of(found - names.begin());
     place = {static_cast<int>(k), exponent_of(file, unit_behind(cells[k], word), name, quantity), diameter};

@@ -21,9 +21,9 @@ std::uint64_t digest_of(const std::string& path) {
 }
 
 // Without its lid a pack that was under stress is one like any other, but its sides stay where they went.
-void check_sides(const scene::Scene& scene, const confine::State& source) {
-  for (std::size_t a = 0; source.on && a < static_cast<std::size_t>(scene.container.lateral_axes()); ++a) {
-    if (source.size[a] == scene.container.size[a]) continue;
+void check_sides(const input::Input& made, const confine::State& source, const scene::Scene& scene) {
+  for (std::size_t a = 0; source.on && a + 1 < made.container.size.size(); ++a) {
+    if (source.size[a] == made.container.size[a]) continue;
     refuse(scene,
            "start.pack: its sides were moved by [confinement], and a scene has them where container.size says; go "
            "on from a pack that was made without lateral and isotropic");
@@ -64,10 +64,10 @@ input::Input with_start(const comm::Comm& comm, input::Input in) {
 }
 
 void check_fit(const scene::Scene& scene, const input::Input& made, const pack::PackSlice& slice) {
+  check_sides(made, slice.confined, scene);
   const std::string moved = pack::container_change(made.container, scene.in.container);
   if (!moved.empty()) refuse(scene, "start.pack: is in " + moved);
   check_components(scene, made);
-  check_sides(scene, slice.confined);
   for (const double radius : slice.rows.radius) check_radii(scene, radius, radius);
 }
 

@@ -292,6 +292,17 @@ TEST_F(Start, UnderOtherForcesItComesToRestAgain) {
   EXPECT_EQ(record.layers.size(), make("base", "", {}).layers.size()) << "no layer was added";
 }
 
+TEST_F(Start, ACheckTellsWhatARunWould) {
+  const auto next = [&](const std::string& set) {
+    const std::string path = (folder_ / "next.toml").string();
+    const input::Input in = input::parse(base + "[start]\npack = \"base.hdf\"\n", path, {{set}});
+    return scene::build(start::with_start(comm_, in));
+  };
+  EXPECT_NO_THROW(check_start(comm_, next("seed=1")));
+  EXPECT_THROW(check_start(comm_, next("start.overlap_limit=1e-9")), Error);
+  EXPECT_THROW(check_start(comm_, next("container.size=[0.4, 0.3, 0.1]")), Error);
+}
+
 TEST_F(Start, WhatDoesNotFitIsRefused) {
   const std::string next = (folder_ / "next.toml").string() + ": start.pack: ";
   EXPECT_EQ(complaint({"container.size=[0.4, 0.3, 0.1]"}),

@@ -286,11 +286,19 @@ def curves():
         check(f"curve {name}: its words are not told", "root:" not in text, text)
 
 
+def starts():
+    """What a run would refuse, a check refuses, too."""
+    folder = fresh("starts")
+    for text, words in (("x,y,z,r,d\n1,1,1,1,2\n", "two columns of radii"), ("x,y,z,r\n", "no particle in it"), ("x,y,z,r\n1,nan,1,1\n", "column y has no number")):
+        (folder / "s.csv").write_text(text)
+        refuses(f"start: {words}", 2, words, "check", "a.toml", "--set", "start.pack=s.csv", folder=folder)
+
+
 def main():
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir(parents=True)
     only = os.environ.get("ONLY", "").split()
-    for part in (hostile_packs, generated_scripts, names_with_blanks, petsc, temporary_names, pipes_and_devices, curves):
+    for part in (hostile_packs, generated_scripts, names_with_blanks, petsc, temporary_names, pipes_and_devices, curves, starts):
         if only and part.__name__ not in only:
             continue
         begin = time.time()
