@@ -115,18 +115,19 @@ control::Filling begin_filling(const comm::Comm& comm, const scene::Scene& scene
   });
 }
 
-void take_time(const comm::Comm& comm, const Stopwatch& watch, const pack::Progress& before,
+// `whole`: with the search for what [target] needs; `making`: of the pack.
+void take_time(const comm::Comm& comm, const Stopwatch& whole, const Stopwatch& making, const pack::Progress& before,
                report::RunRecord& record) {
-  record.wall_seconds = comm.max(watch.seconds());
+  record.wall_seconds = comm.max(whole.seconds());
   record.steps_here = record.steps - before.steps;
   record.particle_steps_per_second =
-      static_cast<double>(record.particle_steps - before.particle_steps) / record.wall_seconds;
+      static_cast<double>(record.particle_steps - before.particle_steps) / comm.max(making.seconds());
 }
 
 // The pack in its file; the particles are let go.
 report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const Options& options, const Files& files,
-                       const control::Filling& filling, Attendant& guest) {
-  const Stopwatch watch;
+                       const control::Filling& filling, const Stopwatch& whole, Attendant& guest) {
+  const Stopwatch making;
   log::info(fmt::format("packmpi: scene {}, {} rank{}, seed {}", scene.in.file, comm.size(),
                         comm.size() == 1 ? "" : "s", scene.in.seed));
   for (const std::string& remark : scene.in.remarks) log::info(remark);
@@ -149,7 +150,7 @@ report::RunRecord make(const comm::Comm& comm, const scene::Scene& scene, const 
   record.series_rows_lost = bed.progress.series.in_file - record.series_rows_in_file;
   measure_bed(bed, record);
   report::tell(comm, scene, record);
-  take_time(comm, watch, before, record);
+  take_time(comm, whole, making, before, record);
   guest.measured(bed, record);
   write_outputs(bed, files, record);
   keeper.finished();
@@ -167,7 +168,7 @@ report::RunRecord make_pack(const comm::Comm& comm, const scene::Scene& scene, c
   Options left = options;  // of the time
   if (left.max_hours > 0.0) left.max_hours = std::max(1e-9, left.max_hours - watch.seconds() / 3600.0);
   const Claim claim = claim_files(comm, scene, options);
-  report::RunRecord record = make(comm, scene, left, claim.files, filling, guest != nullptr ? *guest : nobody);
+  report::RunRecord record = make(comm, scene, left, claim.files, filling, watch, guest != nullptr ? *guest : nobody);
   if (scene.in.output.analysis) (void)analyze(comm, claim.files.pack);
   if (record.series_rows_lost > 0) {
     comm::fail_together(comm, ExitCode::io_failure,
@@ -186,11 +187,12 @@ report::RunRecord make_in_memory(const comm::Comm& comm, const scene::Scene& sce
   if (scene.in.target) bed.progress.filling = find_filling(comm, scene);
   if (scene.in.start) take_over(bed);
   const pack::Progress before = bed.progress;
+  const Stopwatch making;
   fill(bed, guest);
   confine_bed(bed, guest);
   report::RunRecord record = targets_of(comm, scene);
   measure_bed(bed, record);
-  take_time(comm, watch, before, record);
+  take_time(comm, watch, making, before, record);
   guest.measured(bed, record);
   return record;
 }
