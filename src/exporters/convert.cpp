@@ -129,7 +129,7 @@ void check_components(const ConvertRequest& request, const scene::Scene& scene) 
 }
 
 /// Walls that are neither flat nor a cylinder seen from inside are carried by some formats only.
-void check_vessel(const ConvertRequest& request, const geometry::Container& vessel) {
+void check_vessel(const ConvertRequest& request, const geometry::Container& vessel, bool mixture) {
   using geometry::Shape;
   struct Carried {
     std::string_view format;
@@ -152,9 +152,10 @@ void check_vessel(const ConvertRequest& request, const geometry::Container& vess
   }
   const bool flat = vessel.dimension == 2;
   refuse_request(
-      fmt::format("--to {}: the walls of this pack's vessel are not written for it; use {}, or csv, xyz, vtk or esys, "
+      fmt::format("--to {}: the walls of this pack's vessel are not written for it; use {}, or {}, "
                   "which carry particles alone; or take a {} out of it by --cut",
-                  request.format, names, flat ? "rectangle" : "box or a cylinder"));
+                  request.format, names, mixture ? "csv or vtk" : "csv, xyz, vtk or esys",
+                  flat ? "rectangle" : "box or a cylinder"));
 }
 
 /// The scene a pack was made from; what is wrong with it is wrong with the pack.
@@ -233,7 +234,7 @@ Converted convert_pack(const comm::Comm& comm, const ConvertRequest& request) {
   const std::string surface = file_of_cut.empty() ? "" : mesh::read_file(comm, file_of_cut);
   const handover::Cut cut =
       request.cut.empty() ? handover::Cut() : handover::Cut(request.cut, scene, surface);  // pure, as check_copies() is
-  if (!cut.on()) check_vessel(request, scene.container);
+  if (!cut.on()) check_vessel(request, scene.container, scene.features.mixture);
   SpringsPlan springs = plan_springs(request, scene, format.springs, file->has_springs());
   if (const std::string ending = third_ending(request, scene, format, springs.on()); !ending.empty()) {
     names.third = std::filesystem::path(names.request.file).replace_extension(ending).string();

@@ -1,6 +1,7 @@
 // ESyS-Particle and GenGeo: LSMGeometry 1.2. The format has no comments, so these are in a text beside it.
 #include <fmt/compile.h>
 
+#include "config/restitution.hpp"
 #include "exporters/document.hpp"
 #include "exporters/law.hpp"
 
@@ -26,8 +27,8 @@ std::string note(const Specimen& s) {
              "{}\n"
              "damping ratio {}, restitution {}\ngravity {} m/s2\ntime step {} s\n",
              in.particles.density, in.particles.youngs_modulus, in.particles.poisson_ratio, in.contact.friction,
-             in.contact.wall_friction, in.contact.damping_ratio, restitution(in.contact.damping_ratio),
-             in.jamming.gravity, s.step());
+             in.contact.wall_friction, in.contact.damping_ratio,
+             input::restitution_of(in.contact.damping_ratio, in.contact.tension_cutoff), in.jamming.gravity, s.step());
 }
 
 }  // namespace

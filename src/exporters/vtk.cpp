@@ -42,10 +42,12 @@ std::vector<Array> arrays(bool rotation, bool mixture) {
   return all;
 }
 
-/// "--" ends an XML comment, "<" begins a tag.
+/// A comment of XML may have no "--" in it; "<" begins a tag.
 std::string harmless(std::string text) {
+  char before = '\0';
   for (char& c : text) {
-    if (c == '-' || c == '<' || c == '>' || c == '&') c = '_';
+    if ((c == '-' && before == '-') || c == '<' || c == '>' || c == '&') c = '_';
+    before = c;
   }
   return text;
 }

@@ -28,9 +28,10 @@ std::string limit_words(const Criterion& c) {
 
 void list_density(Buffer& out, const RunRecord& r) {
   const bool asked = r.insertion_alone && r.target_particles == 0;
-  line(out, "solid fraction below the target height, phi", asked ? number(r.target_fraction) : "", number(r.phi));
-  line(out, "porosity below the target height, 1 - phi", "", number(porosity(r.phi)));
-  line(out, "void ratio below the height, (1 - phi) / phi", "", number(void_ratio(r.phi)));
+  const char* below = r.confined.on ? "below the lid" : "below the target height";
+  line(out, fmt::format("solid fraction {}, phi", below), asked ? number(r.target_fraction) : "", number(r.phi));
+  line(out, fmt::format("porosity {}, 1 - phi", below), "", number(porosity(r.phi)));
+  line(out, "void ratio there, (1 - phi) / phi", "", number(void_ratio(r.phi)));
   const bool here = r.density.on() && !r.density_is_before_stress();
   const auto wanted = [&](double (*words)(double)) { return here ? number(words(r.density.fraction)) : std::string(); };
   line(out, "solid fraction in the bulk, phi_bulk", wanted([](double phi) { return phi; }), number(r.phi_bulk));

@@ -143,7 +143,7 @@ def pictures(pack: Pack, folder: Path, pixels: int) -> str:
 
 
 CAPTIONS = {
-    "density": "Solid fraction over the height; shaded, the bulk between 0.2 and 0.8 of the target height.",
+    "density": "Solid fraction over the height; shaded, the bulk: between 0.2 and 0.8 of the target height, or of a lid or a bed that is lower.",
     "composition": "What the solid is of, over the height.",
     "lateral": "Solid fraction of the bulk from one side to the other; flat walls order the nearest layers, and the profile swings there.",
     "radial": "Solid fraction by the distance from the wall, around which spheres stand in rings.",
@@ -217,7 +217,7 @@ def comparison(pack: Pack, analysis: dict[str, Any]) -> str:
                     number(scale * made["height"], 5)),
             *([against("φ of a layer when inserted", made["target_fraction"], float(np.mean(inserted)), number(float(np.mean(inserted)), 5))]
               if inserted else []),
-            ["φ below the target height", "–", f"{pack.phi:.4f}", "–"],
+            ["φ below the lid" if "lid" in made else "φ below the target height", "–", f"{pack.phi:.4f}", "–"],
             against("φ of the bulk", made.get("target_phi_bulk"), pack.phi_bulk, f"{pack.phi_bulk:.4f}"),
             ["porosity of the bulk, 1 − φ", "–", f"{pack.porosity_bulk:.4f}", "–"],
             ["void ratio of the bulk, (1 − φ) / φ", "–", number(pack.void_ratio_bulk if pack.phi_bulk else None), "–"]]
