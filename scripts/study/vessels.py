@@ -152,9 +152,9 @@ def table(rows, options, bulk):
         core = [row["core_porosity"] for row in of if row["core_porosity"] != ""]
         curves = f"{dense(x):.3f}, {loose(x):.3f}" if x <= 0.256 else ""
         lines.append(f"| {ratio:g} | {len(of)} x {of[0]['spheres']:,} | {got:.4f} | {got - limit:.4f} | {dixon(x) - 0.4:.4f} | {curves} | "
-                     f"{averaged(ratio, bulk):.4f} | {f'{mean(core):.4f}' if core else ''} | {mean([row['floor_over_weight'] for row in of]):.2f} | "
+                     f"{f'{averaged(ratio, bulk):.4f}' if bulk else ''} | {f'{mean(core):.4f}' if core else ''} | {mean([row['floor_over_weight'] for row in of]):.2f} | "
                      f"{mean([janssen(ratio, row['height'], row['floor_over_weight'], options.friction) for row in of]):.2f} |")
-    lines += ["", *conflicts(bulk), "", f"Friction {options.friction:g}, wide limit {limit:.4f}. {measuring.made_by('scripts/study/vessels.py')}."]
+    lines += ["", *(conflicts(bulk) if bulk else []), "", f"Friction {options.friction:g}, wide limit {limit:.4f}. {measuring.made_by('scripts/study/vessels.py')}."]
     return "\n".join(lines)
 
 
@@ -348,7 +348,8 @@ def main():
     folders = {(ratio, seed): made(options, ratio, seed) for ratio in options.ratios for seed in range(1, options.seeds + 1)}
     rows = [row_of(folder, ratio, seed, options.friction) for (ratio, seed), folder in folders.items()]
     of_profile = [folder for (ratio, _), folder in folders.items() if ratio == PROFILE_OF]
-    bulk = mean([row["core_porosity"] for row in rows if row["core_porosity"] != ""])
+    cores = [row["core_porosity"] for row in rows if row["core_porosity"] != ""]
+    bulk = mean(cores) if cores else None   # of narrow beds alone nothing is far from the wall
     text = table(rows, options, bulk)
     if of_profile:
         x, y = profiles(of_profile)
