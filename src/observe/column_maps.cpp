@@ -44,9 +44,6 @@ std::vector<double> sums(const comm::Comm& comm, const ColumnNumbering& columns,
   return here;
 }
 
-/// [m]: of what the maps tell of: H_d, or a lid below it.
-double upper_end(const geometry::Container& box) { return std::min(box.height(), box.lid.value_or(HUGE_VAL)); }
-
 std::vector<double> tops(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene,
                          const ColumnNumbering& columns) {
   const particles::Store* one = &store;

@@ -8,6 +8,10 @@
 
 namespace packmpi::observe {
 
+double upper_end(const geometry::Container& container) {
+  return std::min(container.height(), container.lid.value_or(HUGE_VAL));
+}
+
 Bulk bulk_of(const scene::Scene& scene, double surface) {
   constexpr double low = 0.2, high = 0.8;
   const double wanted = scene.container.height();
@@ -19,7 +23,7 @@ Bulk bulk_of(const scene::Scene& scene, double surface) {
 Density density(const comm::Comm& comm, const particles::Store& store, const scene::Scene& scene, const Bulk& bulk) {
   const int dimension = scene.container.dimension;
   const auto vertical = static_cast<std::size_t>(scene.container.vertical());
-  const double height = std::min(scene.container.height(), scene.container.lid.value_or(HUGE_VAL));
+  const double height = upper_end(scene.container);
 
   std::array<comm::ExactSum, 3> solid;  // below H_d, low, high
   for (LocalIndex i = 0; i < store.owned(); ++i) {

@@ -33,6 +33,9 @@ struct Bulk {
   [[nodiscard]] bool has(double height) const noexcept { return height >= low && height < high; }
   [[nodiscard]] double depth() const noexcept { return high - low; }
 };
+/// [m] H_d, or a lid below it: solid fractions and maps are of what is below. Local.
+[[nodiscard]] double upper_end(const geometry::Container& container);
+
 /// Of a bed with this surface_height() [m]. Local.
 [[nodiscard]] Bulk bulk_of(const scene::Scene& scene, double surface);
 
