@@ -163,6 +163,17 @@ Histories PackFile::histories(Rank rank, int ranks) const {
   return all;
 }
 
+namespace {
+
+// What touched the lid of a pack under stress does so no more where none comes.
+void forget_lid(const scene::Scene& scene, Histories& all) {
+  if (scene.in.confinement) return;
+  const auto lid = neighbor::wall_partner(neighbor::Wall{}) - static_cast<int>(geometry::Surface::lid);
+  std::erase_if(all.rows, [&](const HistoryRow& row) { return row.other == lid; });
+}
+
+}  // namespace
+
 Histories histories_of(const comm::Comm& comm, const std::string& path, const scene::Scene& scene) {
   const disk::h5::Quiet quiet;
   Histories all;
@@ -172,6 +183,7 @@ Histories histories_of(const comm::Comm& comm, const std::string& path, const sc
       const PackFile file(path);
       particles = file.count();
       all = file.histories(comm.rank(), comm.size());
+      forget_lid(scene, all);
       if (all.any()) check_springs(all, scene);
     });
   });

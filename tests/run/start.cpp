@@ -197,6 +197,12 @@ TEST_F(Start, ALidPressesWhatWasTakenOver) {
   EXPECT_EQ(rows("next").radius, rows("base").radius) << "no layer was added";
 }
 
+TEST_F(Start, ALidIsLeftBehindWithWhatTouchedIt) {
+  const report::RunRecord pressed = make("base", "[confinement]\nvertical = 500.0\n", {"output.contacts=true"});
+  EXPECT_GT(pressed.confined.on_lid, 0.0);
+  EXPECT_NO_THROW((void)go_on({}));
+}
+
 TEST_F(Start, ANumberCountsWhatWasTakenOver) {
   const std::int64_t there = std::ssize(rows("base").id);
   const report::RunRecord record = go_on({fmt::format("particles.count={}", there + 25)});
